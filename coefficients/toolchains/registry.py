@@ -1,0 +1,59 @@
+"""Every language's toolchain by its target's name."""
+
+from types import ModuleType
+
+from coefficients.toolchains import (
+    c,
+    cpp,
+    cuda,
+    glsl,
+    hlsl,
+    javascript,
+    metal,
+    osl,
+    python,
+    slang,
+    wgsl,
+)
+from coefficients.toolchains.toolchain import Toolchain
+
+
+def _assembled(target: str, module: ModuleType) -> Toolchain:
+    return Toolchain(target, module.absence, module.evaluate, module.versions, module.NOTE)
+
+
+TOOLCHAINS: dict[str, Toolchain] = {
+    target: _assembled(target, module)
+    for target, module in (
+        ("c", c),
+        ("cpp", cpp),
+        ("hlsl", hlsl),
+        ("glsl", glsl),
+        ("slang", slang),
+        ("metal", metal),
+        ("wgsl", wgsl),
+        ("osl", osl),
+        ("cuda", cuda),
+        ("python", python),
+        ("javascript", javascript),
+    )
+}
+
+
+def toolchain(target: str) -> Toolchain:
+    """Give a language's toolchain.
+
+    Arguments: `target`, a language's name as in the registry of targets. Raises ValueError for a
+    language that has none.
+    """
+    if target not in TOOLCHAINS:
+        raise ValueError(f"target is {target!r}; allowed: {', '.join(TOOLCHAINS)}")
+    return TOOLCHAINS[target]
+
+
+def available(precision: str) -> list[tuple[str, str | None]]:
+    """Every target with None where its code can be run here in a precision, else the reason.
+
+    Arguments: `precision`, "half", "float" or "double". Raises ValueError for another name.
+    """
+    return [(target, chain.missing(precision)) for target, chain in TOOLCHAINS.items()]
