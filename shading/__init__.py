@@ -1,0 +1,18 @@
+"""The shading models: pure JAX functions of one point, with no notion of integrals or fits.
+
+Every function takes scalars and vectors of shape (3,), is differentiable, and leaves batching to
+the caller's `jax.vmap`. Directions are unit vectors in a frame whose z axis is the surface normal.
+"""
+
+from shading.directions import direction as direction
+from shading.directions import fiber_direction as fiber_direction
+from shading.layer import penetration as penetration
+from shading.layer import scattering_kernel as scattering_kernel
+from shading.sggx import fiber_matrix as fiber_matrix
+from shading.sggx import fiber_normal_distribution as fiber_normal_distribution
+from shading.sggx import fiber_projected_area as fiber_projected_area
+from shading.sggx import normal_distribution as normal_distribution
+from shading.sggx import phase_function as phase_function
+from shading.sggx import projected_area as projected_area
+from shading.sggx import reflect as reflect
+from shading.sggx import sample_visible_normal as sample_visible_normal

@@ -1,0 +1,206 @@
+"""P_s, the fraction of light that a fibre layer scatters towards the base.
+
+P_s(u; α, θf) = 1 − ∫_Ω p_F(u, v) dω_v over the upper hemisphere Ω, with p_F the fibre-like SGGX
+phase function. The supplement fits it (Eq. 1 and 2) for want of a closed form; docs/closed-form.md
+derives the one used here.
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from integrals.integral import Axis, Estimate, Integral, leg
+from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
+from integrals.quadrature import checked_rule, gauss_legendre, gauss_legendre_clustered
+from integrals.root import at_least, positive_root
+from shading import (
+    direction,
+    fiber_direction,
+    fiber_matrix,
+    fiber_normal_distribution,
+    fiber_projected_area,
+    normal_distribution,
+    projected_area,
+    reflect,
+    sample_visible_normal,
+)
+from shading.types import Matrix, Scalar, Vector
+
+ALPHA = Axis("alpha", "α", "1", 0.0, 1.0, "projected area along the fibre", open_below=True)
+THETA_F = Axis("theta_f", "θf", "rad", 0.0, np.pi / 2, "polar angle of the fibre")
+THETA_U = Axis("theta_u", "θu", "rad", 0.0, np.pi / 2, "polar angle of the light")
+PHI = Axis("phi", "φ", "rad", -2 * np.pi, 2 * np.pi, "azimuth of the light from the fibre's")
+AXES = (ALPHA, THETA_F, THETA_U, PHI)
+
+
+# Steps of the root's iteration that reach float64 (5) and float32 (3): tests/test_ps.py.
+FLOAT64_STEPS = 5
+FLOAT32_STEPS = 3
+
+
+def scattered_fraction(
+    cos_un: Scalar, cos_ut: Scalar, cos_nt: Scalar, alpha: Scalar, steps: int = FLOAT64_STEPS
+) -> Array:
+    """Give P_s in closed form from u·n ≥ 0, u·t, n·t and α in (0, 1].
+
+    The normals that reflect u upwards fill an elliptic cone. Mapped to the unit sphere of the
+    SGGX ellipsoid and projected along the light, it covers the part 1 − P_s of the visible disk:
+
+        1 − P_s = λ² √((λ + c)(λ + α²c/σ²)) / (2λ³ + Aλ² + α²c),
+
+    with c = u·n, a = u·t, b = n·t, κ = 1 − α², σ² = 1 − κa², A = α²c + 2κab and λ the positive
+    root of λ³ + Aλ² − (1 − κ(a² + b²))λ − α²c. docs/closed-form.md has the proof. The floors are
+    theorems about the exact terms; they only keep rounding in float32 from leaving the domain.
+    """
+    # notation: c, a, b, α, κ, σ, A, λ as above; E = 1 − κ(a² + b²), m = α²c.
+    c, a, b, alpha = map(jnp.asarray, (cos_un, cos_ut, cos_nt, alpha))
+    alpha = at_least(alpha, 1e-6)  # below, α⁴ leaves the range of float32; P_s has its limit there
+    alpha2 = alpha * alpha
+    kappa = (1 - alpha) * (1 + alpha)
+    a_b = a * b
+    # 1 − a² as a product: its relative accuracy is what α² is weighed against.
+    sin2_ut = at_least((1 - a) * (1 + a), 0.0)
+    sin2_nt = at_least((1 - b) * (1 + b), 0.0)
+    sin2_sin2 = sin2_ut * sin2_nt
+    sigma2 = alpha2 + kappa * sin2_ut
+    m = alpha2 * c
+    half_a = kappa * a_b + m / 2
+    half_e = (alpha2 + kappa * (sin2_sin2 - a_b * a_b)) / 2
+    # Start: with the root −c of the coplanar case split off, λ² − 2hλ − α² = κ gram λ/(λ + c)
+    # exactly, where gram is the Gram determinant of u, n, t; the right side takes a guess of λ.
+    gram = at_least(sin2_sin2 - (c - a_b) * (c - a_b), 0.0)
+    guess = at_least(1 - 0.7 * kappa * jnp.abs(a + b), alpha)
+    h = kappa * (c / 2 - a_b)
+    start = h + jnp.sqrt(h * h + (alpha2 + kappa * gram * guess / (guess + c)))
+    root = positive_root(half_a, half_e, m, start, alpha, steps)
+    root = at_least(root, alpha2)
+    half_b = at_least(half_a + root, alpha)
+    root2 = root * root
+    ellipse = root2 * jnp.sqrt((root + c) * (root + m / sigma2))
+    return 1 - ellipse / ((half_b + half_b) * root2 + m)
+
+
+def sggx_scattered_fraction(matrix: Matrix, light: Vector) -> Array:
+    """Give P_s in closed form for any SGGX matrix S (3, 3) and unit vector u with u·n ≥ 0.
+
+    S is symmetric positive definite; P_s depends on it up to a positive factor.
+    """
+    # notation: B = u nᵀ + n uᵀ − (u·n) I; C = S^½ B S^½ shares the invariants e₁, e₂, e₃ of S B,
+    # and ẑ = S^½u/σ is the light in the ellipsoid's unit-sphere space.
+    matrix, light = jnp.asarray(matrix), jnp.asarray(light)
+    normal = jnp.array([0.0, 0.0, 1.0])
+    cos_un = light @ normal
+    cone = jnp.outer(light, normal) + jnp.outer(normal, light) - cos_un * jnp.eye(3)
+    product = matrix @ cone
+    e1 = jnp.trace(product)
+    e2 = (e1 * e1 - jnp.trace(product @ product)) / 2
+    e3 = jnp.linalg.det(matrix) * cos_un
+    sigma2 = light @ matrix @ light
+    upper_bound = normal @ matrix @ light + jnp.sqrt(sigma2 * (normal @ matrix @ normal))
+    root = positive_root(-e1 / 2, -e2 / 2, e3, upper_bound, 0.0, 2 * FLOAT64_STEPS)
+    seen = matrix @ light
+    image = cone @ seen
+    first, second = seen @ image / sigma2, image @ matrix @ image / sigma2  # ẑᵀCẑ, ẑᵀC²ẑ
+    alignment = second - (e1 - root) * first + e3 / root
+    return 1 - root * jnp.sqrt(alignment) / (2 * root * root - e1 * root + e3 / root)
+
+
+@leg(*AXES)
+def closed_form(alpha, theta_f, theta_u, phi) -> Estimate:
+    """Evaluate the closed form; its rounding error grows as α falls."""
+    light, fiber = direction(theta_u, phi), fiber_direction(theta_f)
+    value = scattered_fraction(light[2], light @ fiber, fiber[2], alpha)
+    return Estimate(value, 4 * np.finfo(float).eps / alpha)
+
+
+def hemisphere_integral(distribution, sigma_u, theta_u, phi, nodes: int) -> Array:
+    """Integrate p(u, v) = D(h) / (4σ(u)) over the upper hemisphere of v.
+
+    `distribution` maps unit vectors h, shape (3,), to D(h). In v the integrand has no limit at
+    v = −u; in h, with dω_v = 4 (u·h) dω_h, it is smooth. With m, e the unit vectors along u + n
+    and u − n and k across them, the upward v are h = cos η (cos ξ m + sin ξ e) + sin η k with
+    (u·n) tan²η < cos 2ξ; tan ξ = sin τ and sin η = sin η_max(τ) sin ω map that to a square
+    (τ, ω) ∈ (−π/2, π/2)², with a boundary layer at the ends of τ as u grazes.
+    """
+    tau, tau_weights = gauss_legendre_clustered(nodes)
+    omega, omega_weights = gauss_legendre(nodes, -np.pi / 2, np.pi / 2)
+    half, azimuth = theta_u / 2, jnp.stack([jnp.cos(phi), jnp.sin(phi)])
+    m = jnp.concatenate([jnp.sin(half) * azimuth, jnp.cos(half)[None]])
+    e = jnp.concatenate([jnp.cos(half) * azimuth, -jnp.sin(half)[None]])
+    k = jnp.stack([-azimuth[1], azimuth[0], jnp.zeros(())])
+
+    def row(tau, weight):
+        shrink = jnp.cos(theta_u) * (1 + jnp.sin(tau) ** 2)
+        width = jnp.cos(tau) ** 2 + shrink
+        sin_eta_max = jnp.cos(tau) / jnp.sqrt(width)
+        sin_eta = sin_eta_max * np.sin(omega)
+        # 1 − sin²η without its cancellation
+        cos_eta = jnp.sqrt(np.cos(omega) ** 2 + shrink / width * np.sin(omega) ** 2)
+        secant = jnp.sqrt(1 + jnp.sin(tau) ** 2)
+        cos_xi, sin_xi = 1 / secant, jnp.sin(tau) / secant
+        in_plane = cos_xi * m + sin_xi * e
+        h = cos_eta[:, None] * in_plane + sin_eta[:, None] * k
+        cos_uh = cos_eta * (cos_xi * jnp.cos(half) + sin_xi * jnp.sin(half))
+        solid_angle = sin_eta_max * np.cos(omega) * jnp.cos(tau) / secant**2
+        values = jax.vmap(distribution)(h) * cos_uh * solid_angle
+        return weight * jnp.sum(omega_weights * values)
+
+    return jnp.sum(jax.vmap(row)(tau, tau_weights)) / sigma_u
+
+
+def _quadrature(distribution, sigma_u, theta_u, phi, nodes: int) -> Estimate:
+    def rule(count: int) -> Array:
+        return 1 - hemisphere_integral(distribution, sigma_u, theta_u, phi, count)
+
+    return checked_rule(rule, nodes, 1e-14)
+
+
+@leg(*AXES)
+def quadrature(alpha, theta_f, theta_u, phi, *, nodes: int = 256) -> Estimate:
+    """Integrate the definition by a product rule of nodes²; the error is against (¾ nodes)²."""
+    fiber = fiber_direction(theta_f)
+    sigma_u = fiber_projected_area(direction(theta_u, phi) @ fiber, alpha)
+    return _quadrature(
+        lambda h: fiber_normal_distribution(h @ fiber, alpha), sigma_u, theta_u, phi, nodes
+    )
+
+
+def sggx_quadrature(matrix: Matrix, theta_u: Scalar, phi: Scalar, *, nodes: int = 256) -> Estimate:
+    """Integrate the definition for any SGGX matrix S (3, 3); angles in radians."""
+    theta_u, phi = jnp.asarray(theta_u), jnp.asarray(phi)
+    sigma_u = projected_area(matrix, direction(theta_u, phi))
+    return _quadrature(lambda h: normal_distribution(matrix, h), sigma_u, theta_u, phi, nodes)
+
+
+@leg(*AXES)
+def monte_carlo(
+    alpha,
+    theta_f,
+    theta_u,
+    phi,
+    *,
+    samples: int = 1 << 16,
+    sequence: Sequence = "random",
+    seed: int = 0,
+) -> Estimate:
+    """Draw visible normals, reflect the light, and count what goes down. Not differentiable."""
+    matrix, light = fiber_matrix(fiber_direction(theta_f), alpha), direction(theta_u, phi)
+    points = unit_points(samples, 2, sequence, seed)
+
+    def goes_down(point):
+        return indicator(-reflect(light, sample_visible_normal(matrix, light, point))[2])
+
+    return mean_estimate(jax.vmap(jax.vmap(goes_down))(points))
+
+
+PS = Integral(
+    name="ps",
+    symbol="P_s",
+    meaning="fraction of light that the fibre layer scatters towards the base",
+    definition="1 − ∫_Ω p_F(u, v) dω_v",
+    axes=AXES,
+    closed_form=closed_form,
+    quadrature=quadrature,
+    monte_carlo=monte_carlo,
+)
