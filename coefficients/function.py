@@ -26,7 +26,8 @@ class Parameter:
         low, high = self.domain
         if not (isfinite(low) and isfinite(high) and low <= high):
             raise ValueError(
-                f"domain of {self.name} is {self.domain!r}; allowed: (low, high), finite, low <= high"
+                f"domain of {self.name} is {self.domain!r}; "
+                "allowed: (low, high), finite, low <= high"
             )
         _require_count(f"size of {self.name}", self.size)
 

@@ -1,0 +1,157 @@
+"""Growing a straight-line program: constants folded, equal steps shared, idle ones dropped."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from coefficients.operations import OPERATIONS
+from coefficients.program import Operand, Program, Step, is_value
+
+
+class Builder:
+    """A program that grows step by step; equal steps are made once and constants are folded.
+
+    Only rewritings that leave every finite result bit for bit (up to the sign of a zero) are made:
+    x·1, x/1, x±0, −(−x), x+(−y), abs(−x) and the like. Sums and products are never re-associated.
+    """
+
+    def __init__(self, inputs: Sequence[str], limit: int):
+        """Begin a program of the named `inputs` with at most `limit` steps."""
+        self.inputs = tuple(inputs)
+        self.limit = limit
+        self.steps: list[Step] = []
+        self._known: dict[tuple[Any, ...], int] = {}
+
+    def apply(self, operation: str, *operands: Operand) -> Operand:
+        """Add one operation and give its value: a number of a value, or a constant.
+
+        Arguments: `operation`, a key of OPERATIONS; `operands`, numbers of values (int) or
+        constants (float, and bool for conditions). Returns an operand. Raises ValueError when the
+        program has grown beyond its limit.
+        """
+        if not any(is_value(operand) for operand in operands):
+            with np.errstate(all="ignore"):
+                # One-element arrays: np.where and the ufuncs then agree on what they give back.
+                folded = OPERATIONS[operation].numpy(*(np.asarray([x]) for x in operands))
+            return folded.item()
+        simpler = self._simplify(operation, operands)
+        return self._append(operation, operands) if simpler is None else simpler
+
+    def name(self, operand: Operand, hint: str) -> None:
+        """Remember what the author called a value, unless it is an input or has a name."""
+        index = operand - len(self.inputs) if is_value(operand) else -1
+        if index >= 0 and self.steps[index].hint is None:
+            self.steps[index] = replace(self.steps[index], hint=hint)
+
+    def finish(self, name: str, outputs: Sequence[Operand]) -> Program:
+        """Close the program: keep the steps that the outputs need, renumbered."""
+        first = len(self.inputs)
+        needed = {operand - first for operand in outputs if is_value(operand)}
+        for index in range(len(self.steps) - 1, -1, -1):
+            if index in needed:
+                needed.update(o - first for o in self.steps[index].operands if is_value(o))
+        kept = [index for index in range(len(self.steps)) if index in needed]
+        number = {first + old: first + new for new, old in enumerate(kept)}
+        number.update({index: index for index in range(first)})
+
+        def renumber(operands: Sequence[Operand]) -> tuple[Operand, ...]:
+            return tuple(number[o] if is_value(o) else float(o) for o in operands)
+
+        steps = (self.steps[index] for index in kept)
+        return Program(
+            name,
+            self.inputs,
+            tuple(replace(step, operands=renumber(step.operands)) for step in steps),
+            renumber(outputs),
+        )
+
+    def _append(self, operation: str, operands: tuple[Operand, ...]) -> int:
+        # The constant 1.0 is not the value number 1, and 0.0 is not -0.0.
+        tagged = [(type(operand).__name__, repr(operand)) for operand in operands]
+        if OPERATIONS[operation].commutative:
+            tagged.sort()
+        key = (operation, *tagged)
+        if key not in self._known:
+            if len(self.steps) >= self.limit:
+                raise ValueError(
+                    f"the program has more than {self.limit} steps; allowed: at most {self.limit}"
+                )
+            self._known[key] = len(self.inputs) + len(self.steps)
+            self.steps.append(Step(operation, operands))
+        return self._known[key]
+
+    def _simplify(self, operation: str, operands: tuple[Operand, ...]) -> Operand | None:
+        if operation in ("add", "mul", "and", "or", "min", "max") and not is_value(operands[0]):
+            constant, value = operands
+        else:
+            constant, value = operands[-1], operands[0]
+        simplest: Operand | None = None
+        if (operation, constant) in _NEUTRAL and not is_value(constant):
+            simplest = value
+        elif (operation, constant) in _ABSORBING and not is_value(constant):
+            simplest = constant
+        elif operation in ("mul", "div") and constant == -1.0 and not is_value(constant):
+            simplest = self.apply("neg", value)
+        elif operation == "sub" and operands[0] == 0.0 and not is_value(operands[0]):
+            simplest = self.apply("neg", operands[1])
+        elif operation in ("min", "max", "and", "or") and _same(*operands):
+            simplest = operands[0]
+        elif operation == "select":
+            simplest = self._simplify_selection(*operands)
+        else:
+            simplest = self._simplify_signs(operation, operands)
+        return simplest
+
+    def _simplify_selection(self, condition: Operand, yes: Operand, no: Operand) -> Operand | None:
+        if not is_value(condition):
+            return yes if condition else no
+        if _same(yes, no):
+            return yes
+        inner = self._operand_of("not", condition)
+        return None if inner is None else self.apply("select", inner, no, yes)
+
+    def _simplify_signs(self, operation: str, operands: tuple[Operand, ...]) -> Operand | None:
+        bare = [self._operand_of("neg", operand) for operand in operands]
+        result: Operand | None = None
+        if operation == "neg":
+            result = bare[0]
+        elif operation == "not":
+            result = self._operand_of("not", operands[0])
+        elif operation == "abs" and bare[0] is not None:
+            result = self.apply("abs", bare[0])
+        elif operation == "add" and bare[1] is not None:
+            result = self.apply("sub", operands[0], bare[1])
+        elif operation == "add" and bare[0] is not None:
+            result = self.apply("sub", operands[1], bare[0])
+        elif operation == "sub" and bare[1] is not None:
+            result = self.apply("add", operands[0], bare[1])
+        elif operation in ("mul", "div") and bare[0] is not None and bare[1] is not None:
+            result = self.apply(operation, bare[0], bare[1])
+        return result
+
+    def _operand_of(self, operation: str, operand: Operand) -> Operand | None:
+        """Give x when `operand` is operation(x), else None."""
+        index = operand - len(self.inputs) if is_value(operand) else -1
+        if index < 0 or self.steps[index].operation != operation:
+            return None
+        return self.steps[index].operands[0]
+
+
+# (operation, constant operand): the result is the other operand, …
+_NEUTRAL = {
+    ("add", 0.0),
+    ("sub", 0.0),
+    ("mul", 1.0),
+    ("div", 1.0),
+    ("pow", 1.0),
+    ("and", True),
+    ("or", False),
+}
+# … or the constant itself.
+_ABSORBING = {("and", False), ("or", True)}
+
+
+def _same(one: Operand, other: Operand) -> bool:
+    return type(one) is type(other) and one == other

@@ -1,0 +1,89 @@
+"""Laying out expressions on lines of a readable length."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+WIDTH = 100
+STEP = "    "
+
+
+@dataclass(frozen=True)
+class Break:
+    """A place where a line may be broken; between pieces that stay on a line it is a space.
+
+    The outermost places have depth 0; the deeper, the later a line is broken there.
+    """
+
+    depth: int = 0
+
+
+# What an expression is made of: words that stay together, and places to break.
+Tokens = list[str | Break]
+
+
+def deeper(tokens: Sequence[str | Break], levels: int = 1) -> Tokens:
+    """Put an expression inside another one: its places to break become less welcome."""
+    return [Break(t.depth + levels) if isinstance(t, Break) else t for t in tokens]
+
+
+def flat(tokens: Sequence[str | Break]) -> str:
+    """Write an expression on one line."""
+    return "".join(" " if isinstance(token, Break) else token for token in tokens)
+
+
+def lay_out(tokens: Sequence[str | Break], indent: str, following: str | None = None) -> list[str]:
+    """Write a statement on as few lines as its length asks for.
+
+    Arguments: `tokens` of the whole statement; `indent` of its first line; `following`, of the
+    others, one step deeper by default. Returns the lines, none longer than WIDTH unless a single
+    word is.
+    """
+    if len(indent) + len(flat(tokens)) <= WIDTH:
+        return [indent + flat(tokens)]
+    lines = [indent]
+    _fill(lines, list(tokens), indent + STEP if following is None else following)
+    return lines
+
+
+def wrap_words(text: str, first: str, following: str) -> list[str]:
+    """Wrap running text: `first` begins the first line, `following` every other one."""
+    lines = [first]
+    for word in text.split():
+        begun = lines[-1] in (first, following)
+        if begun:
+            lines[-1] += word
+        elif len(lines[-1]) + 1 + len(word) <= WIDTH:
+            lines[-1] += " " + word
+        else:
+            lines.append(following + word)
+    return [line.rstrip() for line in lines]
+
+
+def _fill(lines: list[str], tokens: Tokens, indent: str) -> None:
+    """Append tokens to the last of the lines, beginning a new one where they do not fit."""
+    depths = [token.depth for token in tokens if isinstance(token, Break)]
+    if not depths:
+        lines[-1] += flat(tokens)
+        return
+    pieces = _split(tokens, min(depths))
+    for position, piece in enumerate(pieces):
+        text = flat(piece)
+        space = " " if position else ""
+        if len(lines[-1]) + len(space) + len(text) <= WIDTH:
+            lines[-1] += space + text
+        elif position and len(indent) + len(text) <= WIDTH:
+            lines.append(indent + text)
+        else:
+            if position:
+                lines.append(indent)
+            _fill(lines, piece, indent + STEP)
+
+
+def _split(tokens: Tokens, depth: int) -> list[Tokens]:
+    pieces: list[Tokens] = [[]]
+    for token in tokens:
+        if isinstance(token, Break) and token.depth == depth:
+            pieces.append([])
+        else:
+            pieces[-1].append(token)
+    return pieces
