@@ -1,6 +1,6 @@
 # Compilers and runners of exported code. What does not install is named in one line and left out:
 # code that it would have run is then reported as not checked, and the next call tries it again.
-.PHONY: toolchains lock-toolchains
+.PHONY: toolchains toolchain-osl lock-toolchains
 
 TOOLCHAINS := requirements-toolchains.lock
 # command:package of Debian, then its libraries that have no command
@@ -44,7 +44,15 @@ PIP_TOOLCHAIN := .venv/bin/pip install --quiet --disable-pip-version-check --no-
 
 toolchains: .venv/.toolchains  ## install compilers and runners of exported code, where possible
 
+.venv/.toolchain-osl: .venv/.ready requirements-osl.lock
+	@if $(PIP_TOOLCHAIN) -r requirements-osl.lock; then touch $@; \
+	else echo "toolchains: left out: bpy did not install from the package index" >&2; fi
+
+toolchain-osl: .venv/.toolchain-osl  ## install Blender's OSL compiler and renderer (1 GB)
+
 lock-toolchains: setup  ## resolve the locked toolchains anew
-	.venv/bin/uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
-	    --no-emit-index-url --no-emit-find-links --python-version 3.11 --no-deps \
-	    -c requirements.lock requirements-toolchains.in -o $(TOOLCHAINS)
+	for name in toolchains osl; do \
+	    .venv/bin/uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
+	        --no-emit-index-url --no-emit-find-links --python-version 3.11 --no-deps \
+	        -c requirements.lock requirements-$$name.in -o requirements-$$name.lock || exit 1; \
+	done

@@ -13,6 +13,7 @@ from coefficients.toolchains import (
     ToolchainError,
     available,
     device,
+    osl,
     process,
     toolchain,
 )
@@ -117,6 +118,7 @@ def test_what_is_missing_is_a_reason_and_never_a_value(monkeypatch):
             monkeypatch.setattr(name, lambda package, file: None)
     monkeypatch.setattr(device, "packaged", lambda package, file: None)
     monkeypatch.setattr(device, "_workers", [])
+    monkeypatch.setattr(osl, "renderer", lambda: None)
     reasons = dict(available("float"))
     assert list(reasons) == list(TOOLCHAINS)
     assert reasons.pop("python") is None

@@ -7,9 +7,12 @@ stays here. It imports nothing of this project, so that it starts quickly.
 
 import sys
 from functools import partial
+from importlib import import_module
 from multiprocessing.connection import Connection
+from typing import Any
 
-import wgpu
+# By name, since a checker of types runs where it is not installed.
+wgpu: Any = import_module("wgpu")
 
 GROUP = 64
 ROWS = 1 << 18  # one dispatch: far below the limits on groups (65535) and on buffer sizes
