@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coefficients.function import Function, Parameter
-from coefficients.toolchains import osl, toolchain
+from coefficients.toolchains import cuda, hlsl, osl, toolchain
 from coefficients.toolchains.precision import TYPES
 
 UNIT = (-1.0, 1.0)
@@ -251,3 +251,22 @@ def test_many_rows_come_back_in_order(target):
     values = ready(target, "float").run(source(target, SCALAR, "float"), SCALAR, points, "float")
     expected = reference(SCALAR, points, np.float32)
     np.testing.assert_allclose(values, expected, rtol=FUSED * np.finfo(np.float32).eps)
+
+
+@pytest.mark.parametrize("function", [SCALAR, FILL, FORM], ids=lambda function: function.name)
+@pytest.mark.parametrize(
+    ("target", "finder"), [("cuda", "_compiler"), ("hlsl", "_library")], ids=["cuda", "hlsl"]
+)
+def test_without_its_own_compiler_another_reads_it(target, finder, function, monkeypatch):
+    module = {"cuda": cuda, "hlsl": hlsl}[target]
+    monkeypatch.setattr(module, finder, lambda: None)
+    points = spread(function, "float")
+    values = ready(target, "float").run(
+        source(target, function, "float"), function, points, "float"
+    )
+    expected = reference(function, points, np.float32)
+    allowed = 0.0 if target == "cuda" else FUSED * np.finfo(np.float32).eps
+    np.testing.assert_allclose(values, expected, rtol=0, atol=allowed)
+    assert {"cuda": "shim", "hlsl": "lslang"}[target] in toolchain(target).tool
+    # Neither stand-in has 16-bit types.
+    assert toolchain(target).missing("half") is not None
