@@ -1,0 +1,143 @@
+"""Where tables come from: fits, the folder of published constants, the folder of refits, files."""
+
+import json
+import platform
+from importlib.metadata import version
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+
+from coefficients.table import SCHEMA, Table, parse, read
+from fitting import PAPER_FORMS, Fit, Form
+from integrals import INTEGRALS
+
+FOLDER = Path(__file__).parent
+QUANTITIES = tuple(INTEGRALS)
+# A published table with this behind its name is taken as printed, its errata left in.
+AS_PRINTED = "@printed"
+_LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
+
+
+def names() -> list[str]:
+    """List the names that `load` knows, published tables last."""
+    refitted = [path.stem for path in sorted((FOLDER / "refit").glob("*.json"))]
+    published = [f"published/{path.stem}" for path in sorted((FOLDER / "published").glob("*.json"))]
+    printed = [
+        name + AS_PRINTED for name in published if load(name) != load(name + AS_PRINTED)
+    ]  # fmt: skip
+    return [*refitted, *published, *printed]
+
+
+def load(name: str) -> Table:
+    """Read a table by name ('ps', 'published/ps', 'published/ps@printed') or by a file's path.
+
+    A published table is corrected by its errata unless '@printed' follows its name. Raises
+    ValueError for a name that is neither, and for a file that is no valid table.
+    """
+    stem, printed, rest = name.partition(AS_PRINTED)
+    folder, _, quantity = stem.rpartition("/")
+    if rest == "" and folder in ("", "refit", "published") and quantity in QUANTITIES:
+        table = read(FOLDER / (folder or "refit") / f"{quantity}.json")
+        if not printed:
+            return corrected(table)
+        if folder == "published":
+            return table
+    if Path(name).suffix == ".json" or Path(name).is_file():
+        return corrected(read(Path(name)))
+    allowed = ", ".join((*QUANTITIES, *(f"published/{q}" for q in QUANTITIES)))
+    raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
+
+
+def corrected(table: Table) -> Table:
+    """Apply the errata that a published table records; others are returned as they are."""
+    if table.publication is None:
+        return table
+    rows = list(range(len(table.coefficients)))
+    for erratum in table.publication.errata:
+        if erratum.exchange_rows is not None:
+            first, second = erratum.exchange_rows
+            if not (0 <= first < len(rows) and 0 <= second < len(rows)):
+                raise ValueError(f"erratum {erratum.id} exchanges rows that do not exist")
+            rows[first], rows[second] = rows[second], rows[first]
+    return table.model_copy(update={"coefficients": [table.coefficients[row] for row in rows]})
+
+
+def form_of(table: Table) -> Form:
+    """Give the form that a table holds the coefficients of.
+
+    Its axes are the form's, not the table's `arguments`. Raises ValueError for a form that is not
+    known, one of another quantity, and coefficients that are not in its shape.
+    """
+    if table.form not in PAPER_FORMS:
+        allowed = ", ".join(PAPER_FORMS)
+        raise ValueError(f"form {table.form!r} of {table.name} is not known: allowed are {allowed}")
+    form = PAPER_FORMS[table.form]
+    if form.integral.name != table.quantity:
+        raise ValueError(
+            f"form {table.form!r} is one of {form.integral.name}, not {table.quantity}"
+        )
+    expected = np.shape(form.coefficient_names())
+    coefficients = np.array(table.coefficients)
+    if coefficients.shape != expected:
+        raise ValueError(
+            f"{table.name} has coefficients of shape {coefficients.shape}, "
+            f"form {table.form!r} takes {expected}"
+        )
+    return form(jnp.asarray(coefficients))
+
+
+def from_fit(fit: Fit, command: str) -> Table:
+    """Write down a fit as a table; `command` is what made it."""
+    form = type(fit.form)
+    axes = fit.grid.axes
+    record = {
+        "schema": SCHEMA,
+        "name": form.integral.name,
+        "quantity": form.integral.name,
+        "form": form.name,
+        "equation": form.equation,
+        "arguments": [_argument(axis) for axis in form.axes],
+        "coefficients": np.asarray(fit.form.coefficients).tolist(),
+        "coefficient_names": form.coefficient_names(),
+        "grid": {
+            "nodes": [
+                {"argument": axis.name, "count": len(nodes), "spacing": fit.grid.spacing}
+                for axis, nodes in zip(axes, fit.grid.nodes, strict=True)
+            ],
+            "directions": fit.directions,
+        },
+        "weight": fit.weight,
+        "reference": {"leg": form.integral.reference, "error": fit.reference_error},
+        "errors": {"on_grid": _errors(fit.on_grid), "off_grid": _errors(fit.off_grid)},
+        "certificates": {
+            "denominator_bound": _finite(fit.certificate.bound),
+            "boxes": fit.certificate.boxes,
+        },
+        "provenance": {
+            "command": command,
+            "versions": {
+                "python": platform.python_version(),
+                **{library: version(library) for library in _LIBRARIES},
+            },
+            "solver": fit.solver,
+        },
+    }
+    return parse(json.dumps(record), f"the fit of {form.integral.name}")
+
+
+def _argument(axis) -> dict:
+    return {"name": axis.name, "unit": axis.unit, "domain": [float(axis.lower), float(axis.upper)]}
+
+
+def _errors(errors) -> dict:
+    return {
+        "rms": errors.rms,
+        "max": errors.largest,
+        "where": errors.where,
+        "points": errors.points,
+    }
+
+
+def _finite(bound: float) -> float | None:
+    return bound if np.isfinite(bound) else None

@@ -1,0 +1,262 @@
+"""Coefficient tables: what is written to and read from JSON. Host data only, no JAX."""
+
+import json
+import math
+import os
+import tempfile
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+SCHEMA = "shadefit.table/1"
+# No table is near this size: a larger file is refused before it is parsed.
+MAX_BYTES = 4 << 20
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Text = Annotated[str, Field(max_length=2000)]
+Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]{0,63}$")]
+Vector = Annotated[list[Number], Field(min_length=1, max_length=4096)]
+Labels = Annotated[list[Text], Field(min_length=1, max_length=4096)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Argument(_Part):
+    """One argument: its name, unit ('rad' or '1') and the closed domain of the table."""
+
+    name: Text
+    unit: Literal["1", "rad"]
+    domain: Annotated[list[Number], Field(min_length=2, max_length=2)]
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        if not self.domain[0] < self.domain[1]:
+            raise ValueError(f"domain {self.domain} is empty")
+        return self
+
+
+class Nodes(_Part):
+    """The fitting grid along one argument."""
+
+    argument: Text
+    count: Annotated[int, Field(ge=2)]
+    spacing: Literal["uniform", "gauss-legendre"]
+
+
+class GridRecord(_Part):
+    """The fitting grid: nodes along each argument, and lights at each node (0: none)."""
+
+    nodes: list[Nodes]
+    directions: Annotated[int, Field(ge=0)] = 0
+
+
+class Reference(_Part):
+    """The leg that gave the exact values, and a bound on its error over the fitting grid."""
+
+    leg: Literal["closed_form", "quadrature", "monte_carlo"]
+    error: Annotated[Number, Field(ge=0)]
+
+
+class ErrorRecord(_Part):
+    """Rms and largest absolute error on a set of points, and where the largest is."""
+
+    rms: Annotated[Number, Field(ge=0)]
+    max: Annotated[Number, Field(ge=0)]
+    where: dict[str, Number]
+    points: Annotated[int, Field(ge=1)]
+
+
+class ErrorRecords(_Part):
+    """Errors on the fitting grid and on points off it."""
+
+    on_grid: ErrorRecord
+    off_grid: ErrorRecord
+
+
+class Certificates(_Part):
+    """Proven on the whole domain: a lower bound of every denominator (None: there is none)."""
+
+    denominator_bound: Number | None = None
+    boxes: Annotated[int, Field(ge=0)]
+
+
+class Provenance(_Part):
+    """What made the table: the command, the versions of what it ran on, and the solver."""
+
+    command: Text
+    versions: dict[str, Text]
+    solver: Text
+
+
+class Erratum(_Part):
+    """One erratum of a published table; `exchange_rows` is applied when it is corrected."""
+
+    id: Name
+    where: Text
+    printed: Text | None
+    corrected: Text | None
+    why: Text
+    exchange_rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
+
+
+class Publication(_Part):
+    """Where a published table is printed, the clamps of its listing, and its errata."""
+
+    source: Text
+    appendix: Text
+    listing: Text
+    clamps: dict[str, list[Number | None]]
+    errata: list[Erratum]
+
+
+class Table(_Part):
+    """A form's coefficients for one quantity, with all that is known of their worth.
+
+    A refitted table has `grid`, `weight`, `reference`, `errors`, `certificates` and
+    `provenance`; a published one has `publication` instead.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, json_schema_serialization_defaults_required=True
+    )
+
+    schema_: Literal["shadefit.table/1"] = Field(alias="schema")
+    name: Name
+    quantity: Literal["ps", "g", "q", "r"]
+    form: Name
+    equation: Text
+    arguments: Annotated[list[Argument], Field(min_length=1, max_length=8)]
+    coefficients: Vector | Annotated[list[Vector], Field(min_length=1, max_length=64)]
+    coefficient_names: Labels | Annotated[list[Labels], Field(min_length=1, max_length=64)]
+    grid: GridRecord | None = None
+    weight: Literal["uniform", "solid-angle", "cosine"] | None = None
+    reference: Reference | None = None
+    errors: ErrorRecords | None = None
+    certificates: Certificates | None = None
+    provenance: Provenance | None = None
+    publication: Publication | None = None
+
+    @model_validator(mode="after")
+    def _shapes(self):
+        if _shape(self.coefficients) != _shape(self.coefficient_names):
+            raise ValueError(
+                f"coefficients have shape {_shape(self.coefficients)}, "
+                f"their names {_shape(self.coefficient_names)}"
+            )
+        return self
+
+
+def _shape(nested: list) -> tuple[int, ...]:
+    if nested and isinstance(nested[0], list):
+        lengths = {len(row) for row in nested}
+        if len(lengths) > 1:
+            raise ValueError(f"rows have different lengths: {sorted(lengths)}")
+        return (len(nested), lengths.pop())
+    return (len(nested),)
+
+
+def json_schema() -> dict[str, Any]:
+    """Give the JSON Schema that every table is validated against."""
+    return Table.model_json_schema(mode="serialization", by_alias=True)
+
+
+def parse(text: str, source: str) -> Table:
+    """Read a table from JSON text; `source` names it in errors.
+
+    Raises ValueError, one line, for anything that is not a valid table.
+    """
+    try:
+        data = json.loads(text, parse_constant=_refuse_constant)
+        return Table.model_validate(data, strict=True)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"]) or "the table"
+        message = first["msg"].removeprefix("Value error, ")
+        raise ValueError(f"{source}: {place}: {message}") from None
+    except (ValueError, RecursionError) as error:
+        reason = " ".join(str(error).split()) or "nested too deeply"
+        raise ValueError(f"{source} is no JSON table: {reason[:200]}") from None
+
+
+def read(path: Path) -> Table:
+    """Read a table from a file. Raises ValueError for a file that is missing or no table."""
+    try:
+        if not path.is_file():
+            raise ValueError(f"{path}: no such file")
+        if path.stat().st_size > MAX_BYTES:
+            raise ValueError(f"{path} is larger than {MAX_BYTES} bytes: no table is")
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise ValueError(f"{path} is no UTF-8 text") from None
+    except OSError as error:
+        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+    return parse(text, str(path))
+
+
+def serialise(table: Table) -> str:
+    """Give a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
+    data = table.model_dump(by_alias=True, exclude_none=True)
+    return _layout(data, "") + "\n"
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file whole or not at all: to a temporary file beside it, then renamed.
+
+    Raises ValueError where the folder cannot be made or written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise ValueError(f"{path.parent} cannot be written: {error.strerror}") from None
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise ValueError(f"{path} cannot be written: {error.strerror}") from None
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f"{name} is no JSON number")
+
+
+def _layout(value: Any, indent: str) -> str:
+    """Lay JSON out with containers of scalars wrapped to one line or at 100 columns."""
+    inner = indent + "  "
+    if isinstance(value, dict) and value:
+        items = [f"{inner}{json.dumps(key)}: {_layout(each, inner)}" for key, each in value.items()]
+        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
+    if isinstance(value, list) and value:
+        if any(isinstance(each, dict | list) for each in value):
+            items = [f"{inner}{_layout(each, inner)}" for each in value]
+            return "[\n" + ",\n".join(items) + f"\n{indent}]"
+        return _wrapped([_scalar(each) for each in value], indent)
+    return _scalar(value)
+
+
+def _wrapped(items: list[str], indent: str) -> str:
+    one_line = f"[{', '.join(items)}]"
+    if len(one_line) + len(indent) <= 100:
+        return one_line
+    lines, line = [], ""
+    for item in items:
+        if line and len(indent) + 2 + len(line) + len(item) + 2 > 100:
+            lines.append(line)
+            line = ""
+        line += (" " if line else "") + item + ","
+    lines.append(line.removesuffix(","))
+    body = "\n".join(f"{indent}  {each}" for each in lines)
+    return f"[\n{body}\n{indent}]"
+
+
+def _scalar(value: Any) -> str:
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{value} cannot be written as JSON")
+    return json.dumps(value, ensure_ascii=False)

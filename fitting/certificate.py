@@ -1,0 +1,106 @@
+"""Certificates: bounds of a form over its whole domain, not at samples of it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coefficients.function import Function, Parameter
+from coefficients.program import Program, evaluate, is_value
+from coefficients.trace import trace
+from fitting.form import Form
+from fitting.interval import enclose
+
+# Boxes are split until the bound is within this factor of a value that is attained.
+TIGHTNESS = 0.9
+MAX_BOXES = 400_000
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """`bound` is a lower bound of every denominator on the whole domain; +∞ if there is none.
+
+    `boxes` is the number of boxes that the domain was split into to prove it.
+    """
+
+    bound: float
+    boxes: int
+
+    @property
+    def holds(self) -> bool:
+        """Whether no denominator vanishes."""
+        return self.bound > 0
+
+
+def certify_denominators(form: Form) -> Certificate:
+    """Bound every divisor in a form's expression from below, over the form's whole domain."""
+    program = divisors(as_program(form))
+    if not program.outputs:
+        return Certificate(np.inf, 0)
+    lower = np.array([axis.lower for axis in form.axes])
+    upper = np.array([axis.upper for axis in form.axes])
+    return bound_below(program, lower, upper)
+
+
+def as_program(form: Form) -> Program:
+    """Trace a form, its coefficients constants, as a function of its axes."""
+    parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in form.axes)
+    frozen = replace_coefficients(form, np.asarray(form.coefficients))
+    summary = f"{form.integral.symbol} by {form.equation}"
+    return trace(Function(form.integral.name, summary, parameters, None, "value", frozen))
+
+
+def replace_coefficients(form: Form, coefficients: np.ndarray) -> Form:
+    """Give the same form with other coefficients; NumPy ones become constants when traced."""
+    return type(form)(coefficients)  # ty: ignore[invalid-argument-type]
+
+
+def divisors(program: Program) -> Program:
+    """Give the program whose outputs are the divisors of a program's divisions."""
+    found = {
+        step.operands[1]
+        for step in program.steps
+        if step.operation == "div" and is_value(step.operands[1])
+    }
+    return replace(program, outputs=tuple(sorted(found)))
+
+
+def bound_below(program: Program, lower: np.ndarray, upper: np.ndarray) -> Certificate:
+    """Bound all outputs of a program from below on the box [lower, upper], by branch and bound.
+
+    The bound is within `TIGHTNESS` of the least output that is attained, if that is positive and
+    `MAX_BOXES` suffice; else it is −∞.
+    """
+    low, high = lower[None], upper[None]
+    # An input that the outputs do not depend on is never split.
+    scale = np.where([k in reached(program) for k in range(len(lower))], upper - lower, np.inf)
+    attained, proven, boxes = np.inf, np.inf, 0
+    while len(low):
+        attained = min(attained, evaluate(program, (low + high) / 2).min())
+        boxes += len(low)
+        if not attained > 0 or boxes > MAX_BOXES:
+            return Certificate(-np.inf, boxes)
+        bounds = np.min([each.lower for each in enclose(program, low, high)], axis=0)
+        done = bounds >= TIGHTNESS * attained
+        proven = min(proven, bounds[done].min(initial=np.inf))
+        low, high = _halved(low[~done], high[~done], scale)
+    return Certificate(float(proven), boxes)
+
+
+def reached(program: Program) -> set[int]:
+    """Give the numbers of the values that a program's outputs depend on, inputs included."""
+    needed = {operand for operand in program.outputs if is_value(operand)}
+    first = len(program.inputs)
+    for number in range(first + len(program.steps) - 1, first - 1, -1):
+        if number in needed:
+            needed.update(filter(is_value, program.steps[number - first].operands))
+    return needed
+
+
+def _halved(low: np.ndarray, high: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Split every box in two along its longest side, relative to the domain's."""
+    side = np.argmax((high - low) / np.where(scale > 0, scale, 1), axis=1)
+    rows = np.arange(len(low))
+    middle = (low[rows, side] + high[rows, side]) / 2
+    left_high, right_low = high.copy(), low.copy()
+    left_high[rows, side] = right_low[rows, side] = middle
+    return np.concatenate([low, right_low]), np.concatenate([left_high, high])
