@@ -14,7 +14,8 @@ class Builder:
     """A program that grows step by step; equal steps are made once and constants are folded.
 
     Only rewritings that leave every finite result bit for bit (up to the sign of a zero) are made:
-    x·1, x/1, x±0, −(−x), x+(−y), abs(−x) and the like. Sums and products are never re-associated.
+    x·1, x·0, x/1, x±0, −(−x), x+(−y), abs(−x) and the like. Sums and products are never
+    re-associated.
     """
 
     def __init__(self, inputs: Sequence[str], limit: int):
@@ -150,7 +151,7 @@ _NEUTRAL = {
     ("or", False),
 }
 # … or the constant itself.
-_ABSORBING = {("and", False), ("or", True)}
+_ABSORBING = {("mul", 0.0), ("and", False), ("or", True)}
 
 
 def _same(one: Operand, other: Operand) -> bool:

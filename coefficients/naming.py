@@ -93,7 +93,7 @@ def describe(step: Step, operand_names: tuple[str | None, ...]) -> str | None:
         return _product(names[0], names[1])
     if step.operation == "add" and names[0] and names[0] == names[1]:
         return "twice" + _capital(names[0])
-    if step.operation == "sub" and step.operands[0] == 1.0 and names[1]:
+    if step.operation == "sub" and names[0] is None and step.operands[0] == 1.0 and names[1]:
         return "oneMinus" + _capital(names[1])
     if step.operation in _PREFIXES and names[0]:
         return _PREFIXES[step.operation] + _capital(names[0])

@@ -86,23 +86,24 @@ _REDUCTIONS = {
     "reduce_or": "or",
 }
 
-# Primitives that only move elements, with how many of their operands are moved (None: all); the
-# other operands say where to, and must be constants.
-_MOVES: dict[str, int | None] = {
-    "broadcast_in_dim": 1,
-    "concatenate": None,
-    "dynamic_slice": 1,
-    "dynamic_update_slice": 2,
-    "expand_dims": 1,
-    "gather": 1,
-    "pad": None,
-    "reshape": 1,
-    "rev": 1,
-    "slice": 1,
-    "split": 1,
-    "squeeze": 1,
-    "stack": None,
-    "transpose": 1,
+# Primitives that only move elements, with the positions of the operands that are moved (none: all
+# of them); the other operands say where to, and must be constants.
+_MOVES: dict[str, tuple[int, ...]] = {
+    "broadcast_in_dim": (),
+    "concatenate": (),
+    "dynamic_slice": (0,),
+    "dynamic_update_slice": (0, 1),
+    "expand_dims": (),
+    "gather": (0,),
+    "pad": (),
+    "reshape": (),
+    "rev": (),
+    "scatter": (0, 2),
+    "slice": (),
+    "split": (),
+    "squeeze": (),
+    "stack": (),
+    "transpose": (),
 }
 
 
@@ -174,17 +175,17 @@ def _contract(builder: Builder, dimension_numbers: Any, left: Any, right: Any) -
 
 
 def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
-    count = _MOVES[equation.primitive.name]
-    moved = operands if count is None else operands[:count]
-    places = operands[len(moved) :]
-    if any(place.dtype == object for place in places):
-        raise ValueError("an index that depends on the inputs; allowed: constant indices")
+    positions = _MOVES[equation.primitive.name] or range(len(operands))
     # Let the primitive itself move the elements' numbers: where they arrive, the elements go.
-    pool, numbered = [], []
-    for operand in moved:
-        numbered.append(np.arange(operand.size).reshape(operand.shape) + len(pool))
+    pool: list[Operand] = []
+    arguments = list(operands)
+    for position in positions:
+        operand = operands[position]
+        arguments[position] = np.arange(operand.size).reshape(operand.shape) + len(pool)
         pool.extend(_as_operands(operand).reshape(-1))
-    results = equation.primitive.bind(*numbered, *places, **equation.params)
+    if any(argument.dtype == object for argument in arguments):
+        raise ValueError("an index that depends on the inputs; allowed: constant indices")
+    results = equation.primitive.bind(*arguments, **equation.params)
     results = results if equation.primitive.multiple_results else [results]
     gathered = []
     for numbers in map(np.asarray, results):

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Literal
 
 from coefficients.expression import Table, Wording, computation, literal, lone_expression
 from coefficients.function import Function, Parameter, input_names
@@ -13,15 +12,13 @@ from coefficients.statements import choose_statements
 from coefficients.targets import Target, target
 from coefficients.trace import trace
 
-Constants = Literal["inline", "table"]
-
 
 def write(
     functions: Function | Sequence[Function],
     language: str | Target,
     precision: str = "float",
     *,
-    constants: Constants = "inline",
+    constants: str = "inline",
     header: Mapping[str, str] | None = None,
 ) -> str:
     """Write functions as source code of a language, ready to paste.

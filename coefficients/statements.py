@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from coefficients.expression import spelling
 from coefficients.naming import describe, free_name, identifier
-from coefficients.program import Program, is_value
+from coefficients.program import Operand, Program, is_value
 from coefficients.targets import Target
 
 # The longest expression that is still read at a glance, in operations.
@@ -46,7 +46,7 @@ def choose_statements(
     for value, step in enumerate(program.steps, start=first):
         size = 1 + sum(sizes.get(o, 0) for o in step.operands if is_value(o) and o not in names)
         sizes[value] = size
-        is_output = value in program.outputs
+        is_output = any(is_value(o) and o == value for o in program.outputs)
         # A sign before a name costs nothing and says more than another name.
         bare_sign = step.operation == "neg" and size == 1
         selection = step.operation in ("min", "max", "select")
@@ -77,11 +77,23 @@ def _repeated(program: Program, target: Target, precision: str) -> dict[int, str
 
 def _wanted_name(program: Program, value: int, names: dict[int, str]) -> str | None:
     step = program.steps[value - len(program.inputs)]
-    operand_names = tuple(
-        identifier(names[o]) if is_value(o) and o in names else None for o in step.operands
-    )
     hint = identifier(step.hint or "")
     if hint in program.inputs and step.operation in ("min", "max"):
         # alpha = clip(alpha, …): an argument and its clamped value need two names.
         return f"{hint}Clamped"
-    return hint or describe(step, operand_names)
+    return hint or _description(program, value, names)
+
+
+def _description(program: Program, value: int, names: dict[int, str]) -> str | None:
+    step = program.steps[value - len(program.inputs)]
+
+    def name(operand: Operand) -> str | None:
+        if not is_value(operand):
+            return None
+        if operand in names:
+            return identifier(names[operand])
+        # b·b has no name where b·b·b is all that it is used for, but it is b2 for all that.
+        inner = program.steps[operand - len(program.inputs)]
+        return _description(program, operand, names) if inner.operation == "mul" else None
+
+    return describe(step, tuple(map(name, step.operands)))

@@ -16,19 +16,20 @@ from coefficients.primitives import CALLS, allowed, apply_primitive
 from coefficients.program import Program
 
 # More than any target takes: it stops a loop that would grow without end.
-LIMIT = 200_000
+LIMIT = 50_000
 
 
-def trace(function: Function) -> Program:
+def trace(function: Function, limit: int = LIMIT) -> Program:
     """Write a function as a straight-line program.
 
     Calls (jit, custom derivatives, checkpoints) are inlined and scans of fixed length unrolled;
     small arrays are taken apart into scalars; constants are folded in float64 and equal
     subexpressions shared.
 
-    Arguments: `function`, whose `call` is a JAX function of scalars. Returns the program; its
-    inputs are named as `input_names` says. Raises ValueError when float64 is off, when the results
-    are not what `function.result` says, or when an operation cannot be written as shader code.
+    Arguments: `function`, whose `call` is a JAX function of scalars; `limit`, the longest program
+    that is worth the while. Returns the program; its inputs are named as `input_names` says. Raises
+    ValueError when float64 is off, when the results are not what `function.result` says, when an
+    operation cannot be written as shader code, or when there are more than `limit` of them.
     """
     if jnp.result_type(float) != np.float64:
         raise ValueError("jax_enable_x64 is False; allowed: True, set before a function is traced")
@@ -40,7 +41,7 @@ def trace(function: Function) -> Program:
 
     closed, shapes = jax.make_jaxpr(flat, return_shape=True)(*[scalar] * len(names))
     _require_results(function, shapes)
-    builder = Builder(names, LIMIT)
+    builder = Builder(names, limit)
     inputs = [np.array(number, dtype=object) for number in range(len(names))]
     outputs = _inline(function.name, builder, closed, inputs, by_author=True)
     return builder.finish(function.name, [_scalar(output) for output in outputs])

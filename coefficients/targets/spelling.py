@@ -119,8 +119,8 @@ def shortest(value: float, precision: str) -> str:
     with np.errstate(over="ignore"):
         rounded = dtype(value)
     if not np.isfinite(rounded):
-        largest = np.finfo(dtype).max
-        raise ValueError(f"constant {value!r} is no {precision}; allowed: at most {largest!s}")
+        largest = float(np.finfo(dtype).max)
+        raise ValueError(f"constant {value!r} is no {precision}; allowed: at most {largest!r}")
     size = abs(float(rounded))
     if size == 0 or 1e-4 <= size < 1e7:
         return np.format_float_positional(rounded, unique=True, trim="0")
