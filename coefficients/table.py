@@ -96,8 +96,8 @@ class Erratum(_Part):
 
     id: Name
     where: Text
-    printed: Text | None
-    corrected: Text | None
+    printed: Text | None = None
+    corrected: Text | None = None
     why: Text
     exchange_rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
 

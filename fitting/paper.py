@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
 from fitting.form import Form
@@ -11,9 +10,7 @@ from integrals import PS, G, Q, R
 from shading.types import Scalar
 
 # The terms of the vector x of Eq. (2) and (5), in the order of Listing 1.
-TERMS = "β γ δ β² γ² βγ βδ β³ γ³ δ³ β²γ β²δ βγ²".split()
-# What c₀ … c₅ multiply in Eq. (1); Listing 1 has the rows of c₃ and c₄ exchanged.
-BASIS = "1, u·n, u·t, (u·n)², (u·n)(u·t), (u·t)²".split(", ")
+TERMS = ["β", "γ", "δ", "β²", "γ²", "βγ", "βδ", "β³", "γ³", "δ³", "β²γ", "β²δ", "βγ²"]
 
 
 def terms(alpha: Scalar, theta_f: Scalar) -> Array:
@@ -53,7 +50,7 @@ class RationalPs(Form):
         x, beta = terms(alpha, theta_f), 1 - jnp.asarray(alpha)
         numerator = self.coefficients[:, 0] + self.coefficients[:, 1:14] @ x
         denominator = 1 + self.coefficients[:, 14:] @ x
-        offset = np.array([0.5, 0, 0, 0, 0, 0])
+        offset = jnp.array([0.5, 0, 0, 0, 0, 0])
         return offset + beta * numerator / denominator
 
     def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:

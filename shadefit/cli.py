@@ -1,1 +1,184 @@
-def main(): ...
+"""The command line `shadefit`: options and help here, the work in the modules beside it.
+
+Those are imported when a command runs, so that help and completion do not wait for JAX.
+"""
+
+import os
+import sys
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from shadefit.options import Json, angle
+
+app = typer.Typer(
+    name="shadefit",
+    help="Exact shading integrals, certified curve fits, and coefficient tables.",
+    epilog="Example: shadefit compare r",
+    no_args_is_help=False,
+    pretty_exceptions_enable=False,
+)
+
+_NAMES = ("ps", "g", "q", "r")
+
+
+def _complete_quantity(incomplete: str) -> list[str]:
+    return [name for name in (*_NAMES, "all") if name.startswith(incomplete)]
+
+
+def _complete_table(incomplete: str) -> list[str]:
+    every = [*_NAMES, *(f"published/{name}" for name in _NAMES)]
+    return [name for name in every if name.startswith(incomplete)]
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"shadefit {version('shadefit')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _global(
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command("refit", epilog="Example: shadefit refit r g --out /tmp/tables --grid 33")
+def _refit(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(help="ps, g, q, r or all (the default).", autocompletion=_complete_quantity),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for NAME.json.")] = Path("coefficients/refit"),
+    grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129.")] = 65,
+    weight: Annotated[
+        Literal["uniform", "solid-angle", "cosine"],
+        typer.Option(help="Measure of light directions in the fit of ps; the others have none."),
+    ] = "uniform",
+    json: Json = False,
+) -> None:
+    """Refit the paper's forms to exact values and write the tables."""
+    from shadefit import refit
+
+    refit.run(names or [], out, grid, weight, json)
+
+
+@app.command("compare", epilog="Example: shadefit compare ps my/table.json --json")
+def _compare(
+    tables: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Names or paths; by default all four refits.", autocompletion=_complete_table
+        ),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Compare tables with the published ones, each against the exact integral."""
+    from shadefit import compare
+
+    compare.run(tables or [], json)
+
+
+@app.command(
+    "evaluate",
+    epilog="Examples: shadefit evaluate ps --alpha 0.35 --theta-f 45deg --theta-u 30deg "
+    "--phi 90deg; shadefit evaluate g --density 0.2 --cos-v 0.5",
+)
+def _evaluate(
+    integral: Annotated[str, typer.Argument(help="ps, g, q or r.", metavar="INTEGRAL")],
+    alpha: Annotated[
+        float | None, typer.Option(help="Projected area along the fibre, (0, 1] (ps, r).")
+    ] = None,
+    theta_f: Annotated[
+        float | None,
+        typer.Option(parser=angle, metavar="ANGLE", help="Fibre's polar angle (ps, r)."),
+    ] = None,
+    theta_u: Annotated[
+        float | None, typer.Option(parser=angle, metavar="ANGLE", help="Light's polar angle (ps).")
+    ] = None,
+    phi: Annotated[
+        float | None,
+        typer.Option(parser=angle, metavar="ANGLE", help="Light's azimuth from the fibre's (ps)."),
+    ] = None,
+    density: Annotated[
+        float | None, typer.Option("--density", "--d", help="Density of the layer, d ≥ 0 (g, q).")
+    ] = None,
+    cos_v: Annotated[
+        float | None, typer.Option("--cos-v", "--nu", help="Cosine of view and normal, v·n (g).")
+    ] = None,
+    samples: Annotated[int, typer.Option(help="Monte Carlo samples.")] = 1 << 16,
+    sequence: Annotated[
+        Literal["random", "sobol"], typer.Option(help="Monte Carlo points.")
+    ] = "random",
+    seed: Annotated[int, typer.Option(help="Monte Carlo seed.")] = 0,
+    json: Json = False,
+) -> None:
+    """Evaluate an integral by every leg, and by the published and refitted tables.
+
+    Angles are radians unless 'deg' follows: 45deg, 0.785, 0.785rad.
+    """
+    from shadefit import evaluate
+
+    given = {
+        "alpha": alpha,
+        "theta_f": theta_f,
+        "theta_u": theta_u,
+        "phi": phi,
+        "density": density,
+        "cos_v": cos_v,
+    }
+    evaluate.run(integral, given, samples, sequence, seed, json)
+
+
+@app.command("export", epilog="Example: shadefit export published/ps -o ps.json")
+def _export(
+    table: Annotated[
+        str, typer.Argument(help="A table's name or path.", autocompletion=_complete_table)
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File; by default standard output.")
+    ] = None,
+) -> None:
+    """Write a table's validated JSON."""
+    from shadefit import tables
+
+    tables.export(table, output)
+
+
+@app.command("list", epilog="Example: shadefit list --json")
+def _list(json: Json = False) -> None:
+    """List the tables that have a name."""
+    from shadefit import tables
+
+    tables.list_tables(json)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line; exit status 2 with one line on standard error for bad input."""
+    os.environ.setdefault("JAX_ENABLE_X64", "1")
+    given = sys.argv[1:] if arguments is None else arguments
+    try:
+        status = app(given or ["--help"], standalone_mode=False)
+    except (typer.TyperException, ValueError) as error:
+        message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
+        _fail(message, 2)
+    except (typer.Abort, KeyboardInterrupt):
+        _fail("interrupted; nothing was written", 130)
+    except BrokenPipeError:
+        # The reader of our output has gone: not an error, but Python would complain at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(0)
+    sys.exit(status or 0)
+
+
+def _fail(message: str, status: int) -> None:
+    print(f"shadefit: {' '.join(message.split())}", file=sys.stderr)
+    sys.exit(status)

@@ -1,0 +1,79 @@
+"""`shadefit evaluate`: one exact value by every leg, and what the tables make of it."""
+
+from coefficients.catalogue import form_of, load
+from integrals import INTEGRALS, Integral
+from shadefit.terminal import print_json, print_table
+
+MAX_SAMPLES = 1 << 24
+
+
+def run(
+    name: str, given: dict[str, float | None], samples: int, sequence: str, seed: int, json: bool
+) -> None:
+    """Evaluate the integral `name` at the arguments that are given (None: not given)."""
+    if name not in INTEGRALS:
+        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(INTEGRALS)}")
+    integral = INTEGRALS[name]
+    arguments = _checked(integral, given)
+    if not 2 <= samples <= MAX_SAMPLES:
+        raise ValueError(f"samples = {samples}: allowed are 2 to {MAX_SAMPLES}")
+    if not 0 <= seed < 1 << 63:
+        raise ValueError(f"seed = {seed}: allowed are 0 to 2⁶³ − 1")
+    options = {"monte_carlo": {"samples": samples, "sequence": sequence, "seed": seed}}
+    legs = {}
+    for leg_name, leg in integral.legs.items():
+        estimate = leg(*arguments.values(), **options.get(leg_name, {}))
+        legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
+    exact = legs[integral.reference]["value"]
+    tables = {
+        label: _by_table(table, arguments, exact)
+        for label, table in (("published", f"published/{name}"), ("refitted", name))
+    }
+    if json:
+        print_json({"quantity": name, "arguments": arguments, "legs": legs, "tables": tables})
+        return
+    print_table(
+        f"{integral.symbol} = {integral.definition}",
+        ["by", "value", "error"],
+        [
+            [leg_name.replace("_", " "), f"{leg['value']:.15g}", f"± {leg['error']:.1e}"]
+            for leg_name, leg in legs.items()
+        ]
+        + [
+            [label, *_cells(entry)]
+            for label, entry in tables.items()
+        ],
+        "Error: stated by the leg (Monte Carlo: one standard error); of a table, its distance "
+        "from the exact value.",
+    )  # fmt: skip
+
+
+def _checked(integral: Integral, given: dict[str, float | None]) -> dict[str, float]:
+    wanted = [axis.name for axis in integral.axes]
+    flags = ", ".join(f"--{name.replace('_', '-')}" for name in wanted)
+    for name, value in given.items():
+        if (value is None) == (name in wanted):
+            problem = "is missing" if value is None else "is no argument"
+            flag = name.replace("_", "-")
+            raise ValueError(f"--{flag} {problem} of {integral.name}, which takes {flags}")
+    values = {axis.name: given[axis.name] for axis in integral.axes}
+    return {axis.name: axis.check(float(values[axis.name] or 0.0)) for axis in integral.axes}
+
+
+def _by_table(table_name: str, arguments: dict[str, float], exact: float) -> dict:
+    form = form_of(load(table_name))
+    outside = [
+        f"{axis.name} is outside {axis.domain}"
+        for axis in form.axes
+        if not axis.contains(arguments[axis.name])
+    ]
+    if outside:
+        return {"value": None, "difference": None, "reason": "; ".join(outside)}
+    value = float(form(*arguments.values()))
+    return {"value": value, "difference": value - exact, "reason": None}
+
+
+def _cells(entry: dict) -> list[str]:
+    if entry["value"] is None:
+        return ["—", entry["reason"]]
+    return [f"{entry['value']:.15g}", f"{entry['difference']:+.1e}"]

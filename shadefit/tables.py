@@ -1,0 +1,51 @@
+"""`shadefit list` and `shadefit export`: what tables there are, and their JSON."""
+
+from pathlib import Path
+
+from coefficients.catalogue import load, names
+from coefficients.table import Table, serialise, write_whole
+from shadefit.terminal import print_json, print_table
+
+
+def list_tables(json: bool) -> None:
+    """List every table that a name stands for."""
+    tables = {name: load(name) for name in names()}
+    if json:
+        print_json({"tables": [_record(name, table) for name, table in tables.items()]})
+        return
+    print_table(
+        "Tables",
+        ["name", "quantity", "form", "equation", "rms", "largest"],
+        [
+            [name, table.quantity, table.form, table.equation, *_errors(table)]
+            for name, table in tables.items()
+        ],
+        "Errors as the table states them, off the grid; 'compare' measures published ones.",
+    )
+
+
+def export(name: str, output: Path | None) -> None:
+    """Write a table's JSON to a file, or print it."""
+    text = serialise(load(name))
+    if output is None:
+        print(text, end="")
+    else:
+        write_whole(output, text)
+
+
+def _record(name: str, table: Table) -> dict:
+    errors = table.errors.off_grid if table.errors else None
+    return {
+        "name": name,
+        "quantity": table.quantity,
+        "form": table.form,
+        "equation": table.equation,
+        "rms": errors.rms if errors else None,
+        "max": errors.max if errors else None,
+    }
+
+
+def _errors(table: Table) -> list[str]:
+    if table.errors is None:
+        return ["—", "—"]
+    return [f"{table.errors.off_grid.rms:.3e}", f"{table.errors.off_grid.max:.3e}"]
