@@ -41,7 +41,7 @@ def lay_out(tokens: Sequence[str | Break], indent: str, following: str | None = 
     if len(indent) + len(flat(tokens)) <= WIDTH:
         return [indent + flat(tokens)]
     lines = [indent]
-    _fill(lines, list(tokens), indent + STEP if following is None else following)
+    _fill(lines, list(tokens), indent + STEP if following is None else following, False)
     return lines
 
 
@@ -59,24 +59,26 @@ def wrap_words(text: str, first: str, following: str) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
-def _fill(lines: list[str], tokens: Tokens, indent: str) -> None:
-    """Append tokens to the last of the lines, beginning a new one where they do not fit."""
+def _fill(lines: list[str], tokens: Tokens, indent: str, after_break: bool) -> None:
+    """Append tokens to the last of the lines, beginning a new one where they do not fit.
+
+    What fits on a line of its own stays together; what does not is filled in where it stands,
+    however deep its parentheses. `after_break` says that a line may begin with the first token.
+    """
     depths = [token.depth for token in tokens if isinstance(token, Break)]
-    if not depths:
-        lines[-1] += flat(tokens)
-        return
-    pieces = _split(tokens, min(depths))
-    for position, piece in enumerate(pieces):
+    for piece in _split(tokens, min(depths)) if depths else [tokens]:
         text = flat(piece)
-        space = " " if position else ""
+        space = " " if after_break else ""
+        divisible = len(depths) > 0 and any(isinstance(token, Break) for token in piece)
         if len(lines[-1]) + len(space) + len(text) <= WIDTH:
             lines[-1] += space + text
-        elif position and len(indent) + len(text) <= WIDTH:
+        elif after_break and (len(indent) + len(text) <= WIDTH or not divisible):
             lines.append(indent + text)
+        elif divisible:
+            _fill(lines, piece, indent, after_break)
         else:
-            if position:
-                lines.append(indent)
-            _fill(lines, piece, indent + STEP)
+            lines[-1] += text
+        after_break = True
 
 
 def _split(tokens: Tokens, depth: int) -> list[Tokens]:

@@ -11,6 +11,8 @@ from coefficients.targets import Target
 
 # The longest expression that is still read at a glance, in operations.
 LONGEST = 48
+# The most calls that are read inside each other.
+DEEPEST = 4
 # The author's name for a value that is used once is kept from this many operations on.
 WORTH_A_NAME = 3
 
@@ -42,16 +44,20 @@ def choose_statements(
     names = dict(enumerate(input_texts))
     used = set(taken)
     sizes: dict[int, int] = {}
+    depths: dict[int, int] = {}
     chosen = []
     for value, step in enumerate(program.steps, start=first):
-        size = 1 + sum(sizes.get(o, 0) for o in step.operands if is_value(o) and o not in names)
-        sizes[value] = size
+        inner = [o for o in step.operands if is_value(o) and o not in names]
+        sizes[value] = size = 1 + sum(sizes[o] for o in inner)
+        is_call = spelling(target, precision, step.operation) is not None
+        depths[value] = depth = is_call + max((depths[o] for o in inner), default=0)
         is_output = any(is_value(o) and o == value for o in program.outputs)
         # A sign before a name costs nothing and says more than another name.
         bare_sign = step.operation == "neg" and size == 1
         selection = step.operation in ("min", "max", "select")
         authored = step.hint is not None and not is_output and (selection or size >= WORTH_A_NAME)
-        if value in repeated or size > LONGEST or authored or (uses[value] > 1 and not bare_sign):
+        too_much = size > LONGEST or depth > DEEPEST
+        if value in repeated or too_much or authored or (uses[value] > 1 and not bare_sign):
             wanted = _wanted_name(program, value, names) or repeated.get(value) or "t"
             names[value] = free_name(wanted, used)
             used.add(names[value])

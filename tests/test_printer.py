@@ -1,6 +1,7 @@
 import ctypes
 import re
 from dataclasses import replace
+from functools import reduce
 
 import jax.numpy as jnp
 import numpy as np
@@ -204,6 +205,26 @@ def test_every_language_writes_a_form_readably(key, precision, constants):
 
 
 NO_FUNCTIONS = ("hlsl", "glsl", "slang")
+
+
+DEEP = {
+    "Horner": lambda x: reduce(lambda rest, k: k + 0.123 + x * rest, np.arange(60.0), x),
+    "calls": lambda x: reduce(lambda inner, k: jnp.sin(inner) * x + k, np.arange(60.0), x),
+    "signs": lambda x: reduce(lambda inner, k: 1.0 - inner / (x - k), np.arange(60.0), x),
+    "selections": lambda x: reduce(
+        lambda inner, k: jnp.where(x > k, jnp.maximum(inner, k), x * inner), np.arange(40.0), x
+    ),
+}
+
+
+@pytest.mark.parametrize("key", ["c", "wgsl", "python"])
+@pytest.mark.parametrize("name", DEEP)
+def test_deep_expressions_stay_on_the_page(key, name):
+    source = write(of_scalars(DEEP[name]), key)
+    assert max(map(len, source.splitlines())) <= 100
+    if name == "Horner":
+        # Lines are filled: 60 short terms do not take a line each.
+        assert len(source.splitlines()) < 30
 
 
 def test_a_table_holds_each_fitted_constant_once():
