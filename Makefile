@@ -5,10 +5,10 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup refit test test-slow check format bench lock clean
+.PHONY: help setup refit test test-slow check figures bench format lock clean
 
 help:  ## list the targets
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
 
 .venv/.ready: requirements.lock pyproject.toml
 	$(PYTHON) -m venv .venv
@@ -33,6 +33,9 @@ test: check  ## checks, then the default tests
 test-slow: setup  ## the full refits and the large sweeps
 	$(BIN)/pytest -n 2 -m slow
 
+figures: setup  ## draw the figures of README.md into docs/figures
+	$(BIN)/shadefit figures
+
 bench: setup  ## reproduce the claims of speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py
 
@@ -47,3 +50,5 @@ lock: setup  ## resolve the locked dependencies anew
 
 clean:  ## remove the environment and caches
 	rm -rf .venv .pytest_cache .ruff_cache .hypothesis *.egg-info
+
+include toolchains.mk

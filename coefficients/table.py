@@ -203,6 +203,11 @@ def serialise(table: Table) -> str:
 
 
 def write_whole(path: Path, text: str) -> None:
+    """Write a text file whole or not at all (`write_whole_bytes`)."""
+    write_whole_bytes(path, text.encode())
+
+
+def write_whole_bytes(path: Path, data: bytes) -> None:
     """Write a file whole or not at all: to a temporary file beside it, then renamed.
 
     Raises ValueError where the folder cannot be made or written.
@@ -213,8 +218,8 @@ def write_whole(path: Path, text: str) -> None:
     except OSError as error:
         raise ValueError(f"{path.parent} cannot be written: {error.strerror}") from None
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
         os.chmod(temporary, 0o644)
         os.replace(temporary, path)
     except OSError as error:

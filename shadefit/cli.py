@@ -153,6 +153,16 @@ def _export(
     tables.export(table, output)
 
 
+@app.command("figures", epilog="Example: shadefit figures --out /tmp/figures")
+def _figures(
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
+) -> None:
+    """Draw P_s exact, published and refitted, as PNG and SVG."""
+    from shadefit import figures
+
+    figures.run(out)
+
+
 @app.command("list", epilog="Example: shadefit list --json")
 def _list(json: Json = False) -> None:
     """List the tables that have a name."""
