@@ -4,6 +4,7 @@ Own code because `jax.scipy.special.exp1`, `expi` and `expn` do not return for s
 """
 
 import math
+from collections.abc import Callable
 
 import jax
 import jax.numpy as jnp
@@ -12,28 +13,33 @@ from jax import Array
 
 from shading.types import Scalar
 
-# Terms that reach float64 for x ≤ 2 and x ≥ 2 respectively (tests/test_exponential.py).
+# Terms that reach float64: of Ein for x ≤ 2, of γ(2, ·) for x ≤ 1, of E_n for x ≥ 2
+# (tests/test_exponential.py).
 _SERIES_TERMS = 26
+_GAMMA2_TERMS = 18
 _FRACTION_TERMS = 60
 
 
 @jax.custom_jvp
 def e1(x: Scalar) -> Array:
-    """Give E₁(x): by its series up to x = 2, beyond by its continued fraction."""
+    """Give E₁(x) = Ein(x) − γ − ln x."""
+    return _by_range(1, x, lambda x: ein(x) - np.euler_gamma - jnp.log(x))
+
+
+def _by_range(n: int, x: Scalar, series: Callable[[Array], Array]) -> Array:
+    """Give E_n(x): by `series` up to x = 2, beyond by its continued fraction.
+
+    E_n = e^(−x) / (x+n − 1·n/(x+n+2 − 2(n+1)/(x+n+4 − …))): recursion in n would cancel there.
+    """
     x = jnp.asarray(x)
     small, large = jnp.where(x < 2, x, 1.0), jnp.where(x < 2, 2.0, x)
-    series = ein(small) - np.euler_gamma - jnp.log(small)
-    return jnp.where(x < 2, series, jnp.exp(-large) * _fraction(large))
-
-
-def _fraction(x: Array) -> Array:
-    """Give e^x E₁(x) = 1/(x+1 − 1²/(x+3 − 2²/(x+5 − …))) for x ≥ 2."""
 
     def level(i, below):
         k = _FRACTION_TERMS - i
-        return k * k / (x + (2 * k + 1) - below)
+        return k * (k + n - 1) / (large + (2 * k + n) - below)
 
-    return 1 / (x + 1 - jax.lax.fori_loop(0, _FRACTION_TERMS, level, jnp.zeros_like(x)))
+    below = jax.lax.fori_loop(0, _FRACTION_TERMS, level, jnp.zeros_like(large))
+    return jnp.where(x < 2, series(small), jnp.exp(-large) / (large + n - below))
 
 
 def ein(x: Scalar) -> Array:
@@ -45,24 +51,25 @@ def ein(x: Scalar) -> Array:
     return total
 
 
+def gamma2(x: Scalar) -> Array:
+    """Give γ(2, x) = ∫₀^x t e^(−t) dt = 1 − (1 + x) e^(−x) by its series, for 0 ≤ x ≤ 1."""
+    x = jnp.asarray(x)
+    total = jnp.zeros_like(x)
+    for k in range(_GAMMA2_TERMS, 1, -1):
+        total = (-1) ** k * (k - 1) / math.factorial(k) + x * total
+    return x * x * total
+
+
 @jax.custom_jvp
 def e2(x: Scalar) -> Array:
     """Give E₂(x) = e^(−x) − x E₁(x)."""
-    x = jnp.asarray(x)
-    return jnp.exp(-x) - _times_e1(x)
+    return _by_range(2, x, lambda x: jnp.exp(-x) - _times_e1(x))
 
 
 @jax.custom_jvp
 def e3(x: Scalar) -> Array:
     """Give E₃(x) = (e^(−x) − x E₂(x)) / 2."""
-    x = jnp.asarray(x)
-    return (jnp.exp(-x) - x * e2(x)) / 2
-
-
-def one_minus_e2(x: Scalar) -> Array:
-    """Give 1 − E₂(x) to full relative precision for small x."""
-    x = jnp.asarray(x)
-    return -jnp.expm1(-x) + _times_e1(x)
+    return _by_range(3, x, lambda x: (jnp.exp(-x) - x * e2(x)) / 2)
 
 
 def _times_e1(x: Array) -> Array:

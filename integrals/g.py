@@ -9,11 +9,11 @@ import numpy as np
 from jax import Array
 from jax.scipy.special import xlogy
 
-from integrals.exponential import e1, e2, ein, one_minus_e2
+from integrals.exponential import e1, e2, ein, gamma2
 from integrals.integral import Axis, Estimate, Integral, leg
 from integrals.monte_carlo import Sequence, mean_estimate, unit_points
 from integrals.quadrature import exponential_decay
-from shading import scattering_kernel
+from shading import optical_path, scattering_kernel
 from shading.types import Scalar
 
 DENSITY = Axis("density", "d", "1", 0.0, np.inf, "thickness of the layer over its mean free path")
@@ -26,36 +26,48 @@ def ambient_scattering(density: Scalar, cos_v: Scalar) -> Array:
     """Give G in closed form for d > 0 and ν = v·n in (0, 1].
 
     G = 1 − e^(−d/ν) E₂(d) − ν K with K = ln(1 + 1/ν) + E₁(d + d/ν) − e^(−d/ν) E₁(d): write the
-    exponential's integral in t = 1/(u·n) and take partial fractions.
+    exponential's integral in t = 1/(u·n) and take partial fractions. Where d + d/ν < 1 everything
+    but d/ν nearly cancels; there the logarithms are taken out of E₁ and collected first.
     """
+    # notation: x = d/ν
     d, nu = jnp.asarray(density), jnp.asarray(cos_v)
-    escape = jnp.exp(-d / nu)
-    return -jnp.expm1(-d / nu) + escape * one_minus_e2(d) - nu * _logarithms(d, nu)
+    x = optical_path(d, nu)
+    thin = d + x < 1
+    thin_d, thin_x = jnp.where(thin, d, 0.25), jnp.where(thin, x, 0.5)
+    escape = jnp.exp(-thin_x)
+    logarithm = np.euler_gamma + jnp.log(thin_d)
+    collected = (
+        escape * (thin_d + nu) * ein(thin_d)
+        - jnp.expm1(-thin_x)
+        - escape * jnp.expm1(-thin_d)
+        - nu * ein(thin_d + thin_x)
+        + nu * logarithm * gamma2(thin_x)
+    )
+    return jnp.where(thin, collected, 1 - jnp.exp(-x) * e2(d) - nu * _logarithms(d, nu))
 
 
 def _logarithms(d: Array, nu: Array) -> Array:
     """Give K; where d + d/ν < 1 its logarithms cancel, so they are taken out of E₁ first."""
-    path = d + d / nu
-    thin = path < 1
-    small, thin_d = jnp.where(thin, path, 0.5), jnp.where(thin, d, 0.25)
-    escape = jnp.exp(-d / nu)
-    cancelled = (
-        jnp.expm1(-d / nu) * (np.euler_gamma + jnp.log(d)) + ein(small) - escape * ein(thin_d)
-    )
+    x = optical_path(d, nu)
+    thin = d + x < 1
+    small, thin_d = jnp.where(thin, d + x, 0.5), jnp.where(thin, d, 0.25)
+    escape = jnp.exp(-x)
+    cancelled = jnp.expm1(-x) * (np.euler_gamma + jnp.log(d)) + ein(small) - escape * ein(thin_d)
     # ln(1 + 1/ν) without the overflow of 1/ν
-    plain = jnp.log1p(nu) - jnp.log(nu) + e1(path) - escape * e1(d)
+    plain = jnp.log1p(nu) - jnp.log(nu) + e1(d + x) - escape * e1(d)
     return jnp.where(thin, cancelled, plain)
 
 
 @ambient_scattering.defjvp
 def _derivative(primals, tangents):
     (d, nu), (dd, dnu) = primals, tangents
-    escape = jnp.exp(-d / nu)
+    x = optical_path(d, nu)
+    escape = jnp.exp(-x)
     by_density = escape * e2(d) / nu
     by_cosine = (
-        -jnp.expm1(-d - d / nu) / (1 + nu)
+        -jnp.expm1(-d - x) / (1 + nu)
         - _logarithms(d, nu)
-        - (d / nu) * (escape / nu) * (e2(d) - nu * e1(d))
+        - x * (escape / nu) * (e2(d) - nu * e1(d))
     )
     return ambient_scattering(d, nu), by_density * dd + by_cosine * dnu
 
@@ -67,9 +79,22 @@ def _with_limits(evaluate, density: Array, cos_v: Array) -> Array:
     corner d = ν = 0 has no limit: without a layer G = 0 for every ν, and 0 it is.
     """
     layer, grazing = density > 0, cos_v <= 0
-    safe_density, safe_cos = jnp.where(layer, density, 1.0), jnp.where(grazing, 1.0, cos_v)
-    limit = jnp.where(layer, 1 + xlogy(cos_v, jax.lax.stop_gradient(cos_v)), density / safe_cos)
-    return jnp.where(layer & ~grazing, evaluate(safe_density, safe_cos), limit)
+    inside = layer & ~grazing
+    value = evaluate(jnp.where(inside, density, 1.0), jnp.where(inside, cos_v, 1.0))
+    edge = 1 + _nu_log_nu(jnp.where(layer & grazing, cos_v, 1.0))
+    empty = density * jax.lax.stop_gradient(1 / jnp.where(grazing, 1.0, cos_v))
+    return jnp.where(inside, value, jnp.where(layer, edge, empty))
+
+
+@jax.custom_jvp
+def _nu_log_nu(nu: Array) -> Array:
+    return xlogy(nu, nu)
+
+
+@_nu_log_nu.defjvp
+def _steepening(primals, tangents):
+    # Without the constant term, which the remainder O(ν) changes anyway.
+    return _nu_log_nu(*primals), jnp.log(primals[0]) * tangents[0]
 
 
 @leg(*AXES)
@@ -89,7 +114,7 @@ def quadrature(density, cos_v, *, step: float = 1 / 32) -> Estimate:
 
     def rule(step: float) -> Array:
         s, weights = exponential_decay(step)
-        cosines = np.exp(-s)
+        cosines = jnp.exp(-s)
 
         def integral(density, cos_v):
             kernel = jax.vmap(lambda cos_u: scattering_kernel(cos_u, cos_v, density))
@@ -107,7 +132,7 @@ def monte_carlo(
 ) -> Estimate:
     """Average the kernel over lights drawn uniformly from the hemisphere."""
     # 1 − x keeps the cosine off zero: the points lie in [0, 1)
-    cosines = 1 - unit_points(samples, 1, sequence, seed)[..., 0]
+    cosines = jnp.asarray(1 - unit_points(samples, 1, sequence, seed)[..., 0])
 
     def kernel(cos_u):
         return _with_limits(lambda d, nu: scattering_kernel(cos_u, nu, d), density, cos_v)

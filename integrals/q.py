@@ -39,7 +39,7 @@ def quadrature(density, *, step: float = 1 / 32) -> Estimate:
 
     def rule(step: float) -> Array:
         s, weights = exponential_decay(step)
-        cosines = np.exp(-s)
+        cosines = jnp.exp(-s)
         return 2 * jnp.sum(
             weights * cosines**2 * jax.vmap(penetration, (0, None))(cosines, density)
         )
@@ -53,7 +53,7 @@ def monte_carlo(
     density, *, samples: int = 1 << 16, sequence: Sequence = "random", seed: int = 0
 ) -> Estimate:
     """Average P_p over lights drawn with density (u·n)/π."""
-    cosines = np.sqrt(1 - unit_points(samples, 1, sequence, seed)[..., 0])
+    cosines = jnp.sqrt(1 - unit_points(samples, 1, sequence, seed)[..., 0])
     values = jax.vmap(jax.vmap(penetration, (0, None)), (0, None))(cosines, density)
     return mean_estimate(values)
 

@@ -18,3 +18,15 @@ def direction(theta: Scalar, phi: Scalar) -> Array:
 def fiber_direction(theta_f: Scalar) -> Array:
     """Give the fibre direction t = (sin θf, 0, cos θf); θf = 0 is a fibre along the normal."""
     return direction(theta_f, 0.0)
+
+
+def sin2_between(theta_a: Scalar, theta_b: Scalar, phi: Scalar) -> Array:
+    """Give the squared sine of the angle between two directions whose azimuths differ by `phi`.
+
+    From half angles, all in radians: of full relative precision where the cosine rounds to ±1.
+    """
+    theta_a, theta_b = jnp.asarray(theta_a), jnp.asarray(theta_b)
+    sines = jnp.sin(theta_a) * jnp.sin(theta_b)
+    less = jnp.sin((theta_a - theta_b) / 2) ** 2 + sines * jnp.sin(phi / 2) ** 2
+    more = jnp.cos((theta_a + theta_b) / 2) ** 2 + sines * jnp.cos(phi / 2) ** 2
+    return 4 * less * more

@@ -3,10 +3,30 @@
 Densities d ≥ 0 are the layer's thickness over its mean free path; cosines are with the normal.
 """
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
 from shading.types import Scalar
+
+# Beyond this optical path exp(−path) is zero in float64 and float32.
+_OPAQUE = 800.0
+
+
+@jax.custom_jvp
+def optical_path(density: Scalar, cosine: Scalar) -> Array:
+    """Give the optical path d/(ω·n) through the layer, or 800 where it is longer.
+
+    `cosine` is ω·n in (0, 1]. The cap and the derivative, written without (ω·n)², keep grazing
+    directions from overflowing.
+    """
+    return jnp.minimum(jnp.asarray(density) / jnp.asarray(cosine), _OPAQUE)
+
+
+@optical_path.defjvp
+def _path_derivative(primals, tangents):
+    path = optical_path(*primals)
+    return path, (tangents[0] - path * tangents[1]) / primals[1]
 
 
 def penetration(cos_u: Scalar, density: Scalar) -> Array:
@@ -14,7 +34,7 @@ def penetration(cos_u: Scalar, density: Scalar) -> Array:
 
     `cos_u` is u·n in (0, 1].
     """
-    return jnp.exp(-jnp.asarray(density) / jnp.asarray(cos_u))
+    return jnp.exp(-optical_path(density, cos_u))
 
 
 def scattering_kernel(cos_u: Scalar, cos_v: Scalar, density: Scalar) -> Array:
@@ -26,5 +46,5 @@ def scattering_kernel(cos_u: Scalar, cos_v: Scalar, density: Scalar) -> Array:
     """
     cos_u, cos_v = jnp.asarray(cos_u), jnp.asarray(cos_v)
     # The quotient is split so that no product of two small cosines underflows.
-    optical_depth = density / cos_u + density / cos_v
-    return cos_u * -jnp.expm1(-optical_depth) / (cos_u + cos_v)
+    path = optical_path(density, cos_u) + optical_path(density, cos_v)
+    return cos_u * -jnp.expm1(-path) / (cos_u + cos_v)

@@ -18,6 +18,16 @@ def fiber_matrix(fiber: Vector, alpha: Scalar) -> Array:
     return jnp.eye(3) - (1 - alpha) * (1 + alpha) * jnp.outer(fiber, fiber)
 
 
+def fiber_root(fiber: Vector, alpha: Scalar) -> Array:
+    """Give the symmetric root (3, 3) of `fiber_matrix`: I − t tᵀ + α t tᵀ, to full precision in α.
+
+    S itself holds α² next to one, and is singular in float64 for α < 1e-8.
+    """
+    fiber = jnp.asarray(fiber)
+    along = jnp.outer(fiber, fiber)
+    return jnp.eye(3) - along + jnp.asarray(alpha) * along
+
+
 def projected_area(matrix: Matrix, direction: Vector) -> Array:
     """Give σ(ω) = √(ωᵀSω), the microflakes' area per volume seen from the unit vector ω."""
     direction = jnp.asarray(direction)
@@ -26,9 +36,11 @@ def projected_area(matrix: Matrix, direction: Vector) -> Array:
 
 def normal_distribution(matrix: Matrix, normal: Vector) -> Array:
     """Give D(h) = 1 / (π √|S| (hᵀS⁻¹h)²) for a unit vector h, per steradian."""
-    normal = jnp.asarray(normal)
-    inverse_form = normal @ jnp.linalg.solve(jnp.asarray(matrix), normal)
-    return 1 / (jnp.pi * jnp.sqrt(jnp.linalg.det(jnp.asarray(matrix))) * inverse_form**2)
+    normal, (x, y, z) = jnp.asarray(normal), jnp.asarray(matrix)
+    # |S| S⁻¹ by cofactors: under `vmap` over normals a solver would factorise S for each.
+    adjugate = jnp.stack([jnp.cross(y, z), jnp.cross(z, x), jnp.cross(x, y)])
+    determinant = x @ adjugate[0]
+    return determinant**1.5 / (jnp.pi * (normal @ adjugate @ normal) ** 2)
 
 
 def phase_function(matrix: Matrix, light: Vector, view: Vector) -> Array:
@@ -64,11 +76,19 @@ def reflect(direction: Vector, normal: Vector) -> Array:
 def sample_visible_normal(matrix: Matrix, light: Vector, sample: Float[Array, "2"]) -> Array:
     """Draw a microflake normal as seen from `light`: density D(m)⟨u·m⟩ / σ(u) per steradian.
 
-    `sample` is uniform in [0, 1)². With S = LLᵀ and m ∝ Lp, the visible p are those of a unit
-    sphere in orthographic projection along Lᵀu, so a uniform point of the disk gives m.
+    `sample` is uniform in [0, 1)².
     """
-    factor = jnp.linalg.cholesky(jnp.asarray(matrix))
-    axis = factor.T @ jnp.asarray(light)
+    return visible_normal(jnp.linalg.cholesky(jnp.asarray(matrix)), light, sample)
+
+
+def visible_normal(root: Matrix, light: Vector, sample: Float[Array, "2"]) -> Array:
+    """Do as `sample_visible_normal` does, for any `root` L (3, 3) of S = LLᵀ.
+
+    With m ∝ Lp, the visible p are those of a unit sphere in orthographic projection along Lᵀu,
+    so a uniform point of the disk gives m.
+    """
+    root = jnp.asarray(root)
+    axis = root.T @ jnp.asarray(light)
     axis = axis / jnp.linalg.norm(axis)
     tangent, bitangent = _orthonormal(axis)
     radius, angle = jnp.sqrt(sample[0]), 2 * jnp.pi * sample[1]
@@ -77,7 +97,7 @@ def sample_visible_normal(matrix: Matrix, light: Vector, sample: Float[Array, "2
         + radius * jnp.sin(angle) * bitangent
         + jnp.sqrt(1 - sample[0]) * axis
     )
-    normal = factor @ point
+    normal = root @ point
     return normal / jnp.linalg.norm(normal)
 
 
