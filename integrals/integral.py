@@ -43,7 +43,7 @@ class Axis:
     def contains(self, value):
         """Tell, elementwise, whether `value` lies in the domain; NaN does not."""
         above = value > self.lower if self.open_below else value >= self.lower
-        return above & (value <= self.upper)
+        return above & (value <= self.upper) & (value < math.inf)
 
     def check(self, value: float) -> float:
         """Return `value`; raise ValueError if it is not in the domain."""

@@ -17,13 +17,13 @@ from integrals.root import at_least, positive_root
 from shading import (
     direction,
     fiber_direction,
-    fiber_matrix,
     fiber_normal_distribution,
-    fiber_projected_area,
+    fiber_root,
     normal_distribution,
     projected_area,
     reflect,
-    sample_visible_normal,
+    sin2_between,
+    visible_normal,
 )
 from shading.types import Matrix, Scalar, Vector
 
@@ -38,9 +38,20 @@ AXES = (ALPHA, THETA_F, THETA_U, PHI)
 FLOAT64_STEPS = 5
 FLOAT32_STEPS = 3
 
+# Below, P_s at angles that float64 can hold is at its limit, and α⁶ leaves the range.
+LEAST_ALPHA = 1e-50
+
 
 def scattered_fraction(
-    cos_un: Scalar, cos_ut: Scalar, cos_nt: Scalar, alpha: Scalar, steps: int = FLOAT64_STEPS
+    cos_un: Scalar,
+    cos_ut: Scalar,
+    cos_nt: Scalar,
+    alpha: Scalar,
+    steps: int = FLOAT64_STEPS,
+    *,
+    sin2_ut: Scalar | None = None,
+    sin2_nt: Scalar | None = None,
+    least_alpha: float = 1e-6,
 ) -> Array:
     """Give P_s in closed form from u·n ≥ 0, u·t, n·t and α in (0, 1].
 
@@ -52,16 +63,20 @@ def scattered_fraction(
     with c = u·n, a = u·t, b = n·t, κ = 1 − α², σ² = 1 − κa², A = α²c + 2κab and λ the positive
     root of λ³ + Aλ² − (1 − κ(a² + b²))λ − α²c. docs/closed-form.md has the proof. The floors are
     theorems about the exact terms; they only keep rounding in float32 from leaving the domain.
+
+    `sin2_ut` and `sin2_nt` are 1 − (u·t)² and 1 − (n·t)², for callers that know them better than
+    the rounded cosines do: P_s depends on their ratio to α². α is raised to `least_alpha`, below
+    which α⁴ leaves the range of float32.
     """
     # notation: c, a, b, α, κ, σ, A, λ as above; E = 1 − κ(a² + b²), m = α²c.
     c, a, b, alpha = map(jnp.asarray, (cos_un, cos_ut, cos_nt, alpha))
-    alpha = at_least(alpha, 1e-6)  # below, α⁴ leaves the range of float32; P_s has its limit there
+    alpha = at_least(alpha, least_alpha)
     alpha2 = alpha * alpha
     kappa = (1 - alpha) * (1 + alpha)
     a_b = a * b
     # 1 − a² as a product: its relative accuracy is what α² is weighed against.
-    sin2_ut = at_least((1 - a) * (1 + a), 0.0)
-    sin2_nt = at_least((1 - b) * (1 + b), 0.0)
+    sin2_ut = at_least((1 - a) * (1 + a) if sin2_ut is None else jnp.asarray(sin2_ut), 0.0)
+    sin2_nt = at_least((1 - b) * (1 + b) if sin2_nt is None else jnp.asarray(sin2_nt), 0.0)
     sin2_sin2 = sin2_ut * sin2_nt
     sigma2 = alpha2 + kappa * sin2_ut
     m = alpha2 * c
@@ -84,7 +99,8 @@ def scattered_fraction(
 def sggx_scattered_fraction(matrix: Matrix, light: Vector) -> Array:
     """Give P_s in closed form for any SGGX matrix S (3, 3) and unit vector u with u·n ≥ 0.
 
-    S is symmetric positive definite; P_s depends on it up to a positive factor.
+    S is symmetric positive definite; P_s depends on it up to a positive factor. The rounding
+    error is about the unit roundoff times the condition number of S.
     """
     # notation: B = u nᵀ + n uᵀ − (u·n) I; C = S^½ B S^½ shares the invariants e₁, e₂, e₃ of S B,
     # and ẑ = S^½u/σ is the light in the ellipsoid's unit-sphere space.
@@ -109,9 +125,22 @@ def sggx_scattered_fraction(matrix: Matrix, light: Vector) -> Array:
 @leg(*AXES)
 def closed_form(alpha, theta_f, theta_u, phi) -> Estimate:
     """Evaluate the closed form; its rounding error grows as α falls."""
-    light, fiber = direction(theta_u, phi), fiber_direction(theta_f)
-    value = scattered_fraction(light[2], light @ fiber, fiber[2], alpha)
+    value = fraction_at(alpha, theta_f, theta_u, phi)
     return Estimate(value, 4 * np.finfo(float).eps / alpha)
+
+
+def fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+    """Give the closed form of P_s from α and the angles θf, θu, φ in radians, in float64."""
+    light, fiber = direction(theta_u, phi), fiber_direction(theta_f)
+    return scattered_fraction(
+        light[2],
+        light @ fiber,
+        fiber[2],
+        alpha,
+        sin2_ut=sin2_between(theta_u, theta_f, phi),
+        sin2_nt=jnp.sin(theta_f) ** 2,
+        least_alpha=LEAST_ALPHA,
+    )
 
 
 def hemisphere_integral(distribution, sigma_u, theta_u, phi, nodes: int) -> Array:
@@ -149,28 +178,46 @@ def hemisphere_integral(distribution, sigma_u, theta_u, phi, nodes: int) -> Arra
     return jnp.sum(jax.vmap(row)(tau, tau_weights)) / sigma_u
 
 
-def _quadrature(distribution, sigma_u, theta_u, phi, nodes: int) -> Estimate:
+def _quadrature(distribution, sigma_u, theta_u, phi, alpha, nodes: int) -> Estimate:
+    """Apply the rule; `alpha` is the ratio of the ellipsoid's least to its largest axis."""
+
     def rule(count: int) -> Array:
         return 1 - hemisphere_integral(distribution, sigma_u, theta_u, phi, count)
 
-    return checked_rule(rule, nodes, 1e-14)
+    estimate = checked_rule(rule, nodes, 1e-14)
+    # D is a ridge of width α. Rules that step over it agree on a wrong value, so that their
+    # difference is no evidence: what the ridge can hide, as the rule's convergence bounds it.
+    resolution = nodes * alpha
+    hidden = jnp.minimum(1.0, 2 * (1 + resolution) * jnp.exp(-0.8 * resolution))
+    # The rounding of u, h and S counts against σ² and α.
+    rounding = np.finfo(float).eps * (4 / sigma_u**2 + 8 / alpha)
+    error = estimate.error + hidden * (1 + jnp.abs(estimate.value)) + rounding
+    return Estimate(estimate.value, error)
 
 
 @leg(*AXES)
 def quadrature(alpha, theta_f, theta_u, phi, *, nodes: int = 256) -> Estimate:
-    """Integrate the definition by a product rule of nodes²; the error is against (¾ nodes)²."""
+    """Integrate the definition by a product rule of nodes².
+
+    The error is judged against (¾ nodes)² and by whether the nodes resolve α.
+    """
     fiber = fiber_direction(theta_f)
-    sigma_u = fiber_projected_area(direction(theta_u, phi) @ fiber, alpha)
+    sin2_ut = sin2_between(theta_u, theta_f, phi)
+    sigma_u = jnp.sqrt(sin2_ut + alpha**2 * (1 - sin2_ut))
     return _quadrature(
-        lambda h: fiber_normal_distribution(h @ fiber, alpha), sigma_u, theta_u, phi, nodes
+        lambda h: fiber_normal_distribution(h @ fiber, alpha), sigma_u, theta_u, phi, alpha, nodes
     )
 
 
 def sggx_quadrature(matrix: Matrix, theta_u: Scalar, phi: Scalar, *, nodes: int = 256) -> Estimate:
     """Integrate the definition for any SGGX matrix S (3, 3); angles in radians."""
     theta_u, phi = jnp.asarray(theta_u), jnp.asarray(phi)
+    least, _, largest = jnp.linalg.eigvalsh(jax.lax.stop_gradient(jnp.asarray(matrix)))
+    matrix, alpha = matrix / largest, jnp.sqrt(least / largest)
     sigma_u = projected_area(matrix, direction(theta_u, phi))
-    return _quadrature(lambda h: normal_distribution(matrix, h), sigma_u, theta_u, phi, nodes)
+    return _quadrature(
+        lambda h: normal_distribution(matrix, h), sigma_u, theta_u, phi, alpha, nodes
+    )
 
 
 @leg(*AXES)
@@ -185,11 +232,11 @@ def monte_carlo(
     seed: int = 0,
 ) -> Estimate:
     """Draw visible normals, reflect the light, and count what goes down. Not differentiable."""
-    matrix, light = fiber_matrix(fiber_direction(theta_f), alpha), direction(theta_u, phi)
+    root, light = fiber_root(fiber_direction(theta_f), alpha), direction(theta_u, phi)
     points = unit_points(samples, 2, sequence, seed)
 
     def goes_down(point):
-        return indicator(-reflect(light, sample_visible_normal(matrix, light, point))[2])
+        return indicator(-reflect(light, visible_normal(root, light, point))[2])
 
     return mean_estimate(jax.vmap(jax.vmap(goes_down))(points))
 

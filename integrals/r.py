@@ -10,9 +10,9 @@ from jax import Array
 
 from integrals.integral import Estimate, Integral, leg
 from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
-from integrals.ps import ALPHA, THETA_F, scattered_fraction
+from integrals.ps import ALPHA, THETA_F, fraction_at
 from integrals.quadrature import checked_rule, gauss_legendre
-from shading import direction, fiber_direction, fiber_matrix, reflect, sample_visible_normal
+from shading import direction, fiber_direction, fiber_root, reflect, visible_normal
 
 AXES = (ALPHA, THETA_F)
 
@@ -32,13 +32,12 @@ def average_over_lights(fraction, nodes: int) -> Array:
 @leg(*AXES)
 def quadrature(alpha, theta_f, *, nodes: int = 96) -> Estimate:
     """Integrate the closed form of P_s by `nodes`² points; the error is against (¾ nodes)²."""
-    fiber = fiber_direction(theta_f)
 
     def fraction(theta_u, phi):
-        light = direction(theta_u, phi)
-        return scattered_fraction(light[2], light @ fiber, fiber[2], alpha)
+        return fraction_at(alpha, theta_f, theta_u, phi)
 
-    rounding = 4 * np.finfo(float).eps / alpha
+    # The second term is for what P_s does within an angle α of the fibre when the nodes miss it.
+    rounding = 4 * np.finfo(float).eps / alpha + 6 * alpha**2 * jnp.exp(-4 * nodes * alpha)
     return checked_rule(lambda count: average_over_lights(fraction, count), nodes, rounding)
 
 
@@ -50,11 +49,11 @@ def monte_carlo(
 
     Not differentiable.
     """
-    matrix = fiber_matrix(fiber_direction(theta_f), alpha)
+    root = fiber_root(fiber_direction(theta_f), alpha)
 
     def goes_down(point):
         light = direction(jnp.arcsin(jnp.sqrt(point[0])), 2 * jnp.pi * point[1])
-        normal = sample_visible_normal(matrix, light, point[2:])
+        normal = visible_normal(root, light, point[2:])
         return indicator(-reflect(light, normal)[2])
 
     points = unit_points(samples, 4, sequence, seed)
