@@ -2,8 +2,11 @@
 
 import ast
 import linecache
+from collections.abc import Callable
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 import jax
@@ -14,24 +17,32 @@ _JAX = str(Path(jax.__file__).parent)
 Position = tuple[int | None, int | None, int | None, int | None]
 
 
-def place(source_info: Any) -> tuple[str, Position] | None:
-    """Find the expression in the author's source that an equation of a jaxpr comes from.
+# An expression in a source file.
+Place = tuple[str, Position]
 
-    Arguments: `source_info` of the equation. Returns (file, position of the expression) of the
-    innermost frame outside JAX, or None when there is none.
+
+def places(source_info: Any, within: Callable[[CodeType], bool]) -> tuple[Place, ...]:
+    """Find the expressions in the author's source that an equation of a jaxpr comes from.
+
+    Arguments: `source_info` of the equation; `within`, which tells the code of the outermost call
+    that is looked at: beyond it stand whoever called the function. Returns the expressions that
+    were being evaluated outside of JAX, the innermost first; without an outermost call, that one.
     """
     if source_info.traceback is None:
-        return None
+        return ()
     codes, instructions = source_info.traceback.raw_frames()
+    found: list[Place] = []
     for code, instruction in zip(codes, instructions, strict=True):
         if not is_jax(code.co_filename):
             # An instruction takes two bytes; co_positions gives one entry an instruction.
-            positions = list(code.co_positions())
-            return code.co_filename, positions[instruction // 2]
-    return None
+            positions = next(islice(code.co_positions(), instruction // 2, None))
+            found.append((code.co_filename, positions))
+        if within(code):
+            return tuple(found)
+    return tuple(found[:1])
 
 
-def assigned_name(where: tuple[str, Position]) -> str | None:
+def assigned_name(where: Place) -> str | None:
     """Give `name` when the expression at `where` is the right-hand side of `name = …`."""
     file, position = where
     return _assignments(file).get(position)

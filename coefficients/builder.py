@@ -1,5 +1,6 @@
 """Growing a straight-line program: constants folded, equal steps shared, idle ones dropped."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -14,8 +15,8 @@ class Builder:
     """A program that grows step by step; equal steps are made once and constants are folded.
 
     Only rewritings that leave every finite result bit for bit (up to the sign of a zero) are made:
-    x·1, x·0, x/1, x±0, −(−x), x+(−y), abs(−x) and the like. Sums and products are never
-    re-associated.
+    x·1, x·0, x/1, x±0, x/2, −(−x), x+(−y), abs(−x), a choice that is a minimum, and the like.
+    Sums and products are never re-associated.
     """
 
     def __init__(self, inputs: Sequence[str], limit: int):
@@ -95,6 +96,8 @@ class Builder:
             simplest = constant
         elif operation in ("mul", "div") and constant == -1.0 and not is_value(constant):
             simplest = self.apply("neg", value)
+        elif operation == "div" and not is_value(constant) and _is_power_of_two(constant):
+            simplest = self.apply("mul", 1.0 / constant, value)
         elif operation == "sub" and operands[0] == 0.0 and not is_value(operands[0]):
             simplest = self.apply("neg", operands[1])
         elif operation in ("min", "max", "and", "or") and _same(*operands):
@@ -111,7 +114,22 @@ class Builder:
         if _same(yes, no):
             return yes
         inner = self._operand_of("not", condition)
-        return None if inner is None else self.apply("select", inner, no, yes)
+        if inner is not None:
+            return self.apply("select", inner, no, yes)
+        return self._simplify_bound(condition, yes, no)
+
+    def _simplify_bound(self, condition: int, yes: Operand, no: Operand) -> Operand | None:
+        """Recognise the larger and the smaller of two: where(a < b, b, a) is max(a, b)."""
+        index = condition - len(self.inputs)
+        if index < 0 or self.steps[index].operation not in _ORDERS:
+            return None
+        left, right = self.steps[index].operands
+        smaller, larger = _ORDERS[self.steps[index].operation]
+        if _same(yes, left) and _same(no, right):
+            return self.apply(smaller, left, right)
+        if _same(yes, right) and _same(no, left):
+            return self.apply(larger, left, right)
+        return None
 
     def _simplify_signs(self, operation: str, operands: tuple[Operand, ...]) -> Operand | None:
         bare = [self._operand_of("neg", operand) for operand in operands]
@@ -140,6 +158,13 @@ class Builder:
         return self.steps[index].operands[0]
 
 
+# comparison of a and b -> what where(it, a, b) is, and what where(it, b, a) is
+_ORDERS = {
+    "lt": ("min", "max"),
+    "le": ("min", "max"),
+    "gt": ("max", "min"),
+    "ge": ("max", "min"),
+}
 # (operation, constant operand): the result is the other operand, …
 _NEUTRAL = {
     ("add", 0.0),
@@ -152,6 +177,11 @@ _NEUTRAL = {
 }
 # … or the constant itself.
 _ABSORBING = {("mul", 0.0), ("and", False), ("or", True)}
+
+
+def _is_power_of_two(constant: float) -> bool:
+    # Dividing by it and multiplying by its reciprocal give the same bits (in half precision too).
+    return abs(math.frexp(constant)[0]) == 0.5 and 2.0**-10 <= abs(constant) <= 2.0**10
 
 
 def _same(one: Operand, other: Operand) -> bool:

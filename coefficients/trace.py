@@ -1,7 +1,8 @@
 """From a JAX function to a straight-line program, by way of its jaxpr."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
+from types import CodeType
 from typing import Any
 
 import jax
@@ -9,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr, JaxprEqn, Literal
 
-from coefficients.authorship import assigned_name, is_jax, place
+from coefficients.authorship import Place, assigned_name, is_jax, places
 from coefficients.builder import Builder
 from coefficients.function import Function, group_inputs, input_names
 from coefficients.primitives import CALLS, allowed, apply_primitive
@@ -39,22 +40,32 @@ def trace(function: Function, limit: int = LIMIT) -> Program:
     def flat(*values):
         return function.call(*group_inputs(function, values))
 
+    def is_flat(code: CodeType) -> bool:
+        return code is flat.__code__
+
     closed, shapes = jax.make_jaxpr(flat, return_shape=True)(*[scalar] * len(names))
     _require_results(function, shapes)
     builder = Builder(names, limit)
     inputs = [np.array(number, dtype=object) for number in range(len(names))]
-    outputs = _inline(function.name, builder, closed, inputs, by_author=True)
+    outputs = _inline(function.name, builder, closed, inputs, is_flat)
     return builder.finish(function.name, [_scalar(output) for output in outputs])
 
 
 def _inline(
-    name: str, builder: Builder, closed: ClosedJaxpr, inputs: Sequence[Any], by_author: bool
+    name: str,
+    builder: Builder,
+    closed: ClosedJaxpr,
+    inputs: Sequence[Any],
+    within: Callable[[CodeType], bool] | None,
 ) -> list[Any]:
-    """Run a jaxpr on arrays: numeric ones are constants, object ones hold operands."""
+    """Run a jaxpr on arrays: numeric ones are constants, object ones hold operands.
+
+    `within` tells the code that the jaxpr was made of, or is None where its names mean nothing.
+    """
     jaxpr: Jaxpr = closed.jaxpr
     values: dict[Any, Any] = dict(zip(jaxpr.constvars, map(np.asarray, closed.consts), strict=True))
     values.update(zip(jaxpr.invars, inputs, strict=True))
-    hints = _hints(jaxpr.eqns) if by_author else [None] * len(jaxpr.eqns)
+    hints = _hints(jaxpr.eqns, within)
     for equation, hint in zip(jaxpr.eqns, hints, strict=True):
         operands = [
             np.asarray(v.val) if isinstance(v, Literal) else values[v] for v in equation.invars
@@ -72,7 +83,7 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
         inner = equation.params[CALLS[primitive]]
         closed = inner if isinstance(inner, ClosedJaxpr) else ClosedJaxpr(inner, ())
         # Custom derivative rules carry their own jaxpr: the function itself has a source file.
-        return _inline(name, builder, closed, operands, by_author=_is_authored(closed))
+        return _inline(name, builder, closed, operands, _authored(closed))
     if primitive == "scan":
         return _unroll(name, builder, equation, operands)
     if all(operand.dtype != object for operand in operands):
@@ -97,7 +108,7 @@ def _unroll(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]
     order = range(params["length"])
     for index in reversed(order) if params["reverse"] else order:
         arguments = [*constants, *carry, *(np.asarray(each[index]) for each in series)]
-        results = _inline(name, builder, params["jaxpr"], arguments, by_author=False)
+        results = _inline(name, builder, params["jaxpr"], arguments, None)
         carry, row = results[: params["num_carry"]], results[params["num_carry"] :]
         gathered.append(row)
     if params["reverse"]:
@@ -105,21 +116,35 @@ def _unroll(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]
     return [*carry, *(np.stack(column) for column in zip(*gathered, strict=True))]
 
 
-def _is_authored(closed: ClosedJaxpr) -> bool:
+def _authored(closed: ClosedJaxpr) -> Callable[[CodeType], bool] | None:
     # The equations of JAX's own jitted functions remember whoever called them first.
     info = closed.jaxpr.debug_info
-    file = getattr(info, "func_filename", None)
-    return file is not None and not is_jax(file)
+    file, line = getattr(info, "func_filename", None), getattr(info, "func_lineno", None)
+    if file is None or is_jax(file):
+        return None
+    return lambda code: (code.co_filename, code.co_firstlineno) == (file, line)
 
 
-def _hints(equations: Sequence[JaxprEqn]) -> list[str | None]:
-    # Several equations in a row may come from one expression: the last one has its value.
-    places = [place(equation.source_info) for equation in equations]
-    last = [here != following for here, following in pairwise([*places, None])]
-    return [
-        assigned_name(where) if where is not None and final else None
-        for where, final in zip(places, last, strict=True)
-    ]
+def _hints(
+    equations: Sequence[JaxprEqn], within: Callable[[CodeType], bool] | None
+) -> list[str | None]:
+    if within is None:
+        return [None] * len(equations)
+    stacks = [places(equation.source_info, within) for equation in equations]
+    return [_hint(here, following) for here, following in pairwise([*stacks, ()])]
+
+
+def _hint(here: tuple[Place, ...], following: tuple[Place, ...]) -> str | None:
+    # Several equations in a row may come from one expression (x = f(…) is all that f does): the
+    # last one has its value. The innermost name is the nearest to what the equation computes.
+    for level in range(len(here)):
+        outwards = len(here) - level
+        if here[level:] == following[len(following) - outwards :]:
+            return None
+        name = assigned_name(here[level])
+        if name is not None:
+            return name
+    return None
 
 
 def _name_all(builder: Builder, value: Any, hint: str) -> None:

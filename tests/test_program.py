@@ -74,6 +74,10 @@ NATURAL = {
     "polyval": (lambda x: jnp.polyval(jnp.asarray(TABLE[0]), x), 3),
     "scan": (lambda x: lax.fori_loop(0, 3, lambda i, t: t * x, x), 3),
     "chosen": (lambda x: jnp.where(x > 0.25, x, -x), 3),
+    "larger": (lambda x: jnp.where(x < 0.25, 0.25, x), 1),
+    "smaller": (lambda x: jnp.where(x >= 0.25, 0.25, x), 1),
+    "larger still": (lambda x: jnp.where(x > 0.25, x, 0.25), 1),
+    "neither": (lambda x: jnp.where(x > 0.25, x, 0.5), 2),
     "counted": (lambda x: jnp.where(x > 0.25, 1, 0) * 1.0, 2),
     "truth": (lambda x: jnp.float64((x > -0.5) & ~(x > 0.5)), 5),
     "half": (lambda x: lax.rsqrt(x + 2.0), 2),
@@ -133,6 +137,12 @@ def test_constants_are_folded_in_float64():
     assert program.steps == (Step("mul", (0, np.sqrt(2.0) / 3.0)),)
 
 
+def test_halves_are_products():
+    program = trace(of_scalars(lambda x: x / 2.0 + x / -0.25 + x / 3.0))
+    assert [s.operands for s in program.steps if s.operation == "mul"] == [(0.5, 0), (-4.0, 0)]
+    assert operations(program).count("div") == 1
+
+
 def test_minus_zero_is_not_zero():
     program = trace(of_scalars(lambda x: jnp.arctan2(x, 0.0) + jnp.arctan2(x, -0.0)))
     assert operations(program).count("atan2") == 2
@@ -151,6 +161,44 @@ def test_the_author_names_the_values():
     assert hints["beta2"] == "mul"
     assert hints["halves0"] == hints["halves1"] == "mul"
     assert hints["clipped"] == "min"
+
+
+def _squared(value):
+    product = value * value
+    return product
+
+
+@jax.jit
+def _compiled(value):
+    inner = value * 3.0
+    return jnp.sin(inner) + inner
+
+
+def test_names_are_found_through_helpers():
+    def call(alpha):
+        bounded = _at_least(alpha)
+        square = _squared(bounded)
+        compiled = _compiled(square)
+        first, second = compiled + 1.0, compiled + 2.0
+        return first / second
+
+    # The name inside a helper is nearer to the value than the one outside; trace(…) itself is
+    # called in an assignment too, and gives no name.
+    traced = trace(of_scalars(call, "alpha"))
+    assert [(step.hint, step.operation) for step in traced.steps] == [
+        ("bounded", "max"),
+        ("product", "mul"),
+        ("inner", "mul"),
+        (None, "sin"),
+        ("compiled", "add"),
+        (None, "add"),
+        (None, "add"),
+        (None, "div"),
+    ]
+
+
+def _at_least(value):
+    return jnp.where(value < 0.25, 0.25, value)
 
 
 REFUSED = {
