@@ -1,0 +1,1 @@
+"""Tables of coefficients: published, refitted, compared, and written as JSON and shader code."""

@@ -14,10 +14,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from coefficients.function import Function, group_inputs
-from coefficients.operations import OPERATIONS
 from coefficients.printer import write
-from coefficients.program import Program, is_value
+from programs.function import Function, group_inputs
+from programs.operations import OPERATIONS
+from programs.program import Program, is_value
 
 # What an operation of each kind weighs against an addition: a rule of thumb for graphics hardware,
 # where reciprocals, roots and transcendental functions run at a quarter of the rate, a division is

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from coefficients.layout import Break, Tokens, deeper, flat
-from coefficients.program import Operand, Program, is_value
 from coefficients.targets import Target, shortest
 from coefficients.targets.spelling import Binding, Spelling
+from programs.program import Operand, Program, is_value
 
 # Operations that every language here writes alike, unless its target says otherwise: the sign, how
 # tightly it binds, and how tightly its operands must bind to stand without parentheses. Comparisons

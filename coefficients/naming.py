@@ -4,7 +4,7 @@ import re
 import unicodedata
 from collections.abc import Collection
 
-from coefficients.program import Step
+from programs.program import Step
 
 # Signs that have no ASCII of their own, beside the Greek letters, which go by their names.
 _SIGNS = str.maketrans(

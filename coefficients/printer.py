@@ -4,13 +4,13 @@ import re
 from collections.abc import Mapping, Sequence
 
 from coefficients.expression import Table, Wording, computation, literal, lone_expression
-from coefficients.function import Function, Parameter, input_names
 from coefficients.layout import STEP, Break, Tokens, deeper, lay_out, wrap_words
 from coefficients.naming import ascii_text, free_name
-from coefficients.operations import OPERATIONS
 from coefficients.statements import choose_statements
 from coefficients.targets import Target, target
-from coefficients.trace import trace
+from programs.function import Function, Parameter, input_names
+from programs.operations import OPERATIONS
+from programs.trace import trace
 
 
 def write(

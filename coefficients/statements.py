@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from coefficients.expression import spelling
 from coefficients.naming import describe, free_name, identifier
-from coefficients.program import Operand, Program, is_value
 from coefficients.targets import Target
+from programs.program import Operand, Program, is_value
 
 # The longest expression that is still read at a glance, in operations.
 LONGEST = 48

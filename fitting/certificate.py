@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coefficients.function import Function, Parameter
-from coefficients.program import Program, evaluate, is_value
-from coefficients.trace import trace
 from fitting.form import Form
 from fitting.interval import enclose
+from programs.function import Function, Parameter
+from programs.program import Program, evaluate, is_value
+from programs.trace import trace
 
 # Boxes are split until the bound is within this factor of a value that is attained.
 TIGHTNESS = 0.9

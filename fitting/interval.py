@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coefficients.program import Program, interpret
+from programs.program import Program, interpret
 
 # NumPy's elementary functions are accurate to 4 units in the last place.
 _ELEMENTARY_ULPS = 4

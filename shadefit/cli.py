@@ -33,7 +33,7 @@ def _complete_table(incomplete: str) -> list[str]:
     return [name for name in every if name.startswith(incomplete)]
 
 
-def _print_version(wanted: bool) -> None:
+def _print_version(wanted: bool | None) -> None:
     if wanted:
         print(f"shadefit {version('shadefit')}")
         raise typer.Exit
@@ -42,11 +42,11 @@ def _print_version(wanted: bool) -> None:
 @app.callback()
 def _global(
     _version: Annotated[
-        bool,
+        bool | None,
         typer.Option(
             "--version", callback=_print_version, is_eager=True, help="Print the version."
         ),
-    ] = False,
+    ] = None,
 ) -> None:
     pass
 

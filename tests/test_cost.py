@@ -6,8 +6,8 @@ import pytest
 
 from coefficients import cost
 from coefficients.cost import WEIGHTS, Cost, count, throughput
-from coefficients.function import Function, Parameter
-from coefficients.trace import trace
+from programs.function import Function, Parameter
+from programs.trace import trace
 
 # Two compilers of the same float32 expression: contraction into fma, another exp.
 DIFFERENCE = 1e-6

@@ -13,11 +13,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coefficients.function import Function, Parameter, group_inputs
 from coefficients.printer import write
-from coefficients.program import evaluate
 from coefficients.targets import PRECISIONS, TARGETS
-from coefficients.trace import trace
+from programs.function import Function, Parameter, group_inputs
+from programs.program import evaluate
+from programs.trace import trace
 
 # Every node below is bounded by 2 and changes by at most twice what its operands change by: a dozen
 # of them amplify the roundings of libraries that differ by an ulp to no more than this.

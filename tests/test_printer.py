@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coefficients.function import Function, Parameter
 from coefficients.printer import write
 from coefficients.targets import PRECISIONS, TARGETS, shortest, target
+from programs.function import Function, Parameter
 
 ALL = [(key, precision) for key in TARGETS for precision in TARGETS[key].types]
 RNG = np.random.default_rng(11)

@@ -5,9 +5,9 @@ import pytest
 from jax import lax
 from jax.scipy.special import erf
 
-from coefficients.function import Function, Parameter, group_inputs, input_names
-from coefficients.program import Program, Step, evaluate, interpret
-from coefficients.trace import trace
+from programs.function import Function, Parameter, group_inputs, input_names
+from programs.program import Program, Step, evaluate, interpret
+from programs.trace import trace
 
 
 def of_scalars(call, names: str = "x", result=None) -> Function:

@@ -7,7 +7,7 @@ import tempfile
 import numpy as np
 import pytest
 
-from coefficients.function import Function, Parameter
+from programs.function import Function, Parameter
 from coefficients.toolchains import (
     TOOLCHAINS,
     ToolchainError,

@@ -5,7 +5,7 @@ import tempfile
 import numpy as np
 import pytest
 
-from coefficients.function import Function, Parameter
+from programs.function import Function, Parameter
 from coefficients.toolchains import cuda, hlsl, osl, toolchain
 from coefficients.toolchains.precision import TYPES
 

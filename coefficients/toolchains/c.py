@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains.native import HALF, STRICT, evaluate_program, half_missing
 from coefficients.toolchains.process import absent, first_line
+from programs.function import Function
 
 NOTE = "C11, -O2, no contraction to fma; half is _Float16, emulated with every step rounded."
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.function import Function, input_names
 from coefficients.toolchains.native import (
     STRICT,
     evaluate_program,
@@ -21,6 +20,7 @@ from coefficients.toolchains.process import (
     workspace,
 )
 from coefficients.toolchains.toolchain import breakdown, refusal, result_count
+from programs.function import Function, input_names
 
 NOTE = (
     "no GPU here: with nvcc the device code is compiled to machine code but only the host's half "

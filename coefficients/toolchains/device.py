@@ -16,9 +16,9 @@ from typing import IO, Any
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains.process import TIME_LIMIT, ToolchainError, packaged, quiet_environment
 from coefficients.toolchains.toolchain import breakdown, refusal, result_count
+from programs.function import Function
 
 # What the optional number types need; float needs nothing.
 FEATURES = {"half": "shader-f16", "double": "shader-f64"}

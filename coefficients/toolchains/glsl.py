@@ -4,11 +4,11 @@ import re
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains import device
 from coefficients.toolchains.process import absent, execute, first_line, workspace
 from coefficients.toolchains.shader import STORED, main_body
 from coefficients.toolchains.toolchain import refusal
+from programs.function import Function
 
 NOTE = (
     "GLSL 4.50; the device's inverse trigonometric functions may be off by 4e-4, its exp, log and "

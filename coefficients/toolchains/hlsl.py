@@ -7,7 +7,6 @@ from platform import machine
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains import device
 from coefficients.toolchains.process import (
     ToolchainError,
@@ -19,6 +18,7 @@ from coefficients.toolchains.process import (
 )
 from coefficients.toolchains.shader import hlsl_shader
 from coefficients.toolchains.toolchain import refusal
+from programs.function import Function
 
 NOTE = (
     "shader model 6.2 with 16-bit types, to SPIR-V, not DXIL; the device's inverse trigonometric "

@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains.native import values_from
 from coefficients.toolchains.process import absent, execute, first_line, workspace
 from coefficients.toolchains.toolchain import breakdown, refusal, result_count
+from programs.function import Function
 
 NOTE = "JavaScript computes in double only."
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains.lexical import refuse, words
 from coefficients.toolchains.native import HALF, STRICT, evaluate_program, half_missing
 from coefficients.toolchains.process import absent, first_line
 from coefficients.toolchains.toolchain import refusal
+from programs.function import Function
 
 NOTE = (
     "a shim: Metal has no compiler here, so g++ compiles the code against a stand-in for "

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.function import Function, input_names
 from coefficients.toolchains.process import ToolchainError, execute, first_line, workspace
 from coefficients.toolchains.toolchain import breakdown, refusal, result_count
+from programs.function import Function, input_names
 
 # No contraction to fma and no fast-math: every operation is rounded once, as NumPy does it.
 # A float that becomes a double unseen is an error: the code would not be what it says it is.

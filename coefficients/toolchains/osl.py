@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.function import Function, input_names
 from coefficients.toolchains.lexical import refuse, words
 from coefficients.toolchains.native import STRICT, evaluate_program
 from coefficients.toolchains.process import (
@@ -23,6 +22,7 @@ from coefficients.toolchains.process import (
     workspace,
 )
 from coefficients.toolchains.toolchain import breakdown, refusal, result_count
+from programs.function import Function, input_names
 
 NOTE = (
     "with bpy, OSL's own compiler and Cycles on the processor, whose exp and pow are good to 1e-5 "

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from coefficients.function import Function, group_inputs
 from coefficients.toolchains.precision import number_type
 from coefficients.toolchains.process import ToolchainError
 from coefficients.toolchains.toolchain import breakdown, refusal
+from programs.function import Function, group_inputs
 
 NOTE = "NumPy rounds every operation to the type of its arrays; whole arrays at a time."
 

@@ -1,7 +1,7 @@
 """A compute shader around a function, in the languages that look like C."""
 
-from coefficients.function import Function, input_names
 from coefficients.toolchains.toolchain import result_count
+from programs.function import Function, input_names
 
 # Halves travel as floats, which hold them exactly, so that no 16-bit storage is needed.
 STORED = {"half": "float", "float": "float", "double": "double"}

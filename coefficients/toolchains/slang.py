@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.function import Function
 from coefficients.toolchains import device
 from coefficients.toolchains.process import execute, first_line, packaged, program, workspace
 from coefficients.toolchains.shader import hlsl_shader
 from coefficients.toolchains.toolchain import refusal
+from programs.function import Function
 
 NOTE = (
     "slangc -O0 to SPIR-V; the device's inverse trigonometric functions may be off by 4e-4, its "

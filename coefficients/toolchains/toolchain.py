@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coefficients.function import Function, input_names
 from coefficients.toolchains.precision import number_type, rounded
 from coefficients.toolchains.process import ToolchainError
+from programs.function import Function, input_names
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from coefficients.function import Function, input_names
 from coefficients.toolchains import device
 from coefficients.toolchains.toolchain import result_count
+from programs.function import Function, input_names
 
 NOTE = (
     "the device's inverse trigonometric functions may be off by 4e-4, its exp, log and pow by "

@@ -6,7 +6,7 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
-from coefficients.operations import OPERATIONS
+from programs.operations import OPERATIONS
 
 # An operand is the number of a value (an int) or a constant (a float). Values are numbered from
 # zero: first the inputs, then the results of the steps, in order.

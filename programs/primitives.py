@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from jax.extend.core import JaxprEqn
 
-from coefficients.builder import Builder
-from coefficients.operations import OPERATIONS
-from coefficients.program import Operand
+from programs.builder import Builder
+from programs.operations import OPERATIONS
+from programs.program import Operand
 
 # Primitives that call a jaxpr, with the parameter that holds it.
 CALLS = {

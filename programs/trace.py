@@ -10,11 +10,11 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr, JaxprEqn, Literal
 
-from coefficients.authorship import Place, assigned_name, is_jax, places
-from coefficients.builder import Builder
-from coefficients.function import Function, group_inputs, input_names
-from coefficients.primitives import CALLS, allowed, apply_primitive
-from coefficients.program import Program
+from programs.authorship import Place, assigned_name, is_jax, places
+from programs.builder import Builder
+from programs.function import Function, group_inputs, input_names
+from programs.primitives import CALLS, allowed, apply_primitive
+from programs.program import Program
 
 # More than any target takes: it stops a loop that would grow without end.
 LIMIT = 50_000

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from coefficients.operations import OPERATIONS
-from coefficients.program import Operand, Program, Step, is_value
+from programs.operations import OPERATIONS
+from programs.program import Operand, Program, Step, is_value
 
 
 class Builder:

@@ -1,0 +1,236 @@
+"""The command line: what it prints, what it refuses, and that refusing leaves nothing behind."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+from coefficients.catalogue import load, names
+from coefficients.table import parse
+from integrals import INTEGRALS
+from shadefit.cli import main
+from shadefit.options import angle
+
+PS_POINT = ["--alpha", "0.35", "--theta-f", "45deg", "--theta-u", "30deg", "--phi", "90deg"]
+POINTS = {
+    "ps": PS_POINT,
+    "g": ["--density", "0.2", "--cos-v", "0.5"],
+    "q": ["--density", "0.2"],
+    "r": ["--alpha", "0.35", "--theta-f", "45deg"],
+}
+
+
+def run(capsys, *arguments):
+    """Run the command line in this process: exit status, standard output, standard error."""
+    with pytest.raises(SystemExit) as stopped:
+        main(list(arguments))
+    captured = capsys.readouterr()
+    return stopped.value.code, captured.out, captured.err
+
+
+def refuses(capsys, *arguments):
+    status, out, err = run(capsys, *arguments)
+    assert status == 2, (arguments, out, err)
+    assert out == ""
+    assert err.startswith("shadefit: ")
+    assert err.count("\n") == 1
+    return err
+
+
+@pytest.mark.parametrize("name", INTEGRALS)
+def test_evaluate_gives_every_leg_within_its_error(capsys, name):
+    status, out, _ = run(capsys, "evaluate", name, *POINTS[name], "--json")
+    assert status == 0
+    result = json.loads(out)
+    assert set(result["legs"]) == set(INTEGRALS[name].legs)
+    exact = result["legs"][INTEGRALS[name].reference]
+    for leg_name, leg in result["legs"].items():
+        allowed = 5 * leg["error"] if leg_name == "monte_carlo" else leg["error"]
+        assert abs(leg["value"] - exact["value"]) <= allowed + exact["error"]
+    # The worst published table, P_s, is off by at most 0.14.
+    for table in result["tables"].values():
+        assert abs(table["difference"]) < 0.15
+
+
+def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
+    arguments = ["--alpha", "0.35", "--theta-f", "1deg", "--theta-u", "30deg", "--phi", "0"]
+    _, out, _ = run(capsys, "evaluate", "ps", *arguments, "--json")
+    result = json.loads(out)
+    assert result["tables"]["published"]["value"] is None
+    assert "theta_f" in result["tables"]["published"]["reason"]
+    assert result["legs"]["closed_form"]["value"] > 0
+
+
+def test_monte_carlo_is_reproducible_and_depends_on_the_seed(capsys):
+    outputs = [
+        run(capsys, "evaluate", "q", "--density", "0.3", "--seed", seed, "--json")[1]
+        for seed in ("1", "1", "2")
+    ]
+    assert outputs[0] == outputs[1] != outputs[2]
+
+
+def test_refit_writes_valid_tables_and_the_same_bytes_twice(capsys, tmp_path):
+    for folder in ("a", "b"):
+        out = str(tmp_path / folder)
+        status, _, _ = run(capsys, "refit", "q", "g", "--grid", "17", "--out", out)
+        assert status == 0
+    for name in ("q", "g"):
+        first, second = ((tmp_path / folder / f"{name}.json").read_bytes() for folder in "ab")
+        assert first == second
+        assert parse(first.decode(), name).name == name
+    assert sorted(path.name for path in (tmp_path / "a").iterdir()) == ["g.json", "q.json"]
+
+
+def test_compare_measures_each_table_against_the_exact_integral(capsys):
+    status, out, _ = run(capsys, "compare", "q", "--json")
+    assert status == 0
+    (comparison,) = json.loads(out)["comparisons"]
+    published, refitted = comparison["tables"]
+    assert published["table"] == "published"
+    assert refitted["rms"] <= published["rms"]
+    assert refitted["rms_ratio"] == pytest.approx(refitted["rms"] / published["rms"])
+    assert comparison["largest_difference"]["value"] > 0
+
+
+def test_compare_prints_a_table(capsys):
+    status, out, _ = run(capsys, "compare", "q")
+    assert status == 0
+    assert "published" in out
+    assert "refitted q" in out
+    assert "-1.7280754" in out
+
+
+@pytest.mark.parametrize("name", names())
+def test_export_prints_what_a_name_stands_for(capsys, name):
+    status, out, _ = run(capsys, "export", name)
+    assert status == 0
+    assert parse(out, name) == load(name)
+
+
+def test_export_writes_a_file_that_can_be_named_in_its_turn(capsys, tmp_path):
+    path = tmp_path / "deep" / "r.json"
+    assert run(capsys, "export", "r", "-o", str(path))[0] == 0
+    assert run(capsys, "export", str(path))[1] == path.read_text()
+
+
+def test_list_names_every_table(capsys):
+    _, out, _ = run(capsys, "list", "--json")
+    assert [row["name"] for row in json.loads(out)["tables"]] == names()
+
+
+@pytest.mark.parametrize("command", [[], ["refit"], ["compare"], ["evaluate"], ["export"]])
+def test_help_has_an_example(capsys, command):
+    status, out, _ = run(capsys, *command, "--help")
+    assert status == 0
+    assert "Example" in out
+
+
+def test_version(capsys):
+    assert run(capsys, "--version")[1].startswith("shadefit ")
+
+
+@pytest.mark.parametrize(
+    ("text", "radians"),
+    [
+        ("45deg", math.pi / 4),
+        ("90 deg", math.pi / 2),
+        ("0.5", 0.5),
+        ("-.5rad", -0.5),
+        ("1e-3", 1e-3),
+    ],
+)
+def test_angles(text, radians):
+    assert angle(text) == radians
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["evaluate", "ps", *PS_POINT[2:]],
+        ["evaluate", "ps", *PS_POINT, "--density", "1"],
+        ["evaluate", "q", "--density", "inf"],
+        ["evaluate", "q", "--density", "-0.1"],
+        ["evaluate", "q", "--density", "0.1", "--samples", "1"],
+        ["evaluate", "q", "--density", "0.1", "--seed", "-1"],
+        ["evaluate", "q", "--density", "0.1", "--sequence", "sobol", "--samples", "100"],
+        ["refit", "ps", "--weight", "none"],
+        ["compare", "published/zz"],
+        ["export", "published/ps@"],
+        ["export", "ps@printed"],
+        ["--frobnicate"],
+        ["frobnicate"],
+    ],
+)
+def test_bad_input_is_one_line(capsys, arguments):
+    refuses(capsys, *arguments)
+
+
+@pytest.mark.parametrize("grid", ["1", "0", "-3", "8", "130", "x", "1e9"])
+def test_a_grid_that_cannot_be_fitted_is_refused(capsys, tmp_path, grid):
+    refuses(capsys, "refit", "all", "--grid", grid, "--out", str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(capsys, tmp_path):
+    file = tmp_path / "file"
+    file.write_text("kept")
+    assert "no folder" in refuses(capsys, "refit", "q", "--out", str(file / "below"))
+    assert file.read_text() == "kept"
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@given(value=st.floats(allow_nan=True, allow_infinity=True) | st.text(max_size=12))
+@example(value=math.nan)
+@example(value="٣")
+def test_any_alpha_is_evaluated_or_refused(capsys, value):
+    text = str(value)
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    arguments = [
+        "evaluate",
+        "r",
+        f"--alpha={text}",
+        "--theta-f",
+        "0.3",
+        "--samples",
+        "64",
+        "--json",
+    ]
+    if 0 < number <= 1:
+        status, out, _ = run(capsys, *arguments)
+        assert status == 0
+        assert 0 <= json.loads(out)["legs"]["quadrature"]["value"] <= 1
+    else:
+        refuses(capsys, *arguments)
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
+@given(text=st.text(max_size=20).filter(lambda t: t not in names()))
+def test_any_other_table_name_is_refused(capsys, text):
+    refuses(capsys, "export", "--", text)
+
+
+def test_an_interrupted_refit_leaves_the_old_table(tmp_path):
+    table = tmp_path / "ps.json"
+    table.write_text("old")
+    command = [sys.executable, "-c", "from shadefit.cli import main; main()", "refit", "ps"]
+    process = subprocess.Popen(
+        [*command, "--out", str(tmp_path)],
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode not in (0, 2), err
+    assert table.read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["ps.json"]
