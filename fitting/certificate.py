@@ -1,6 +1,7 @@
 """Certificates: bounds of a form over its whole domain, not at samples of it."""
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from programs.trace import trace
 # Boxes are split until the bound is within this factor of a value that is attained.
 TIGHTNESS = 0.9
 MAX_BOXES = 400_000
+# A box that has shrunk to this part of the domain without a positive bound may well hold a zero.
+SMALLEST_BOX = 1e-9
 
 
 @dataclass(frozen=True)
@@ -44,14 +47,9 @@ def certify_denominators(form: Form) -> Certificate:
 def as_program(form: Form) -> Program:
     """Trace a form, its coefficients constants, as a function of its axes."""
     parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in form.axes)
-    frozen = replace_coefficients(form, np.asarray(form.coefficients))
+    frozen = type(form)(np.asarray(form.coefficients))
     summary = f"{form.integral.symbol} by {form.equation}"
     return trace(Function(form.integral.name, summary, parameters, None, "value", frozen))
-
-
-def replace_coefficients(form: Form, coefficients: np.ndarray) -> Form:
-    """Give the same form with other coefficients; NumPy ones become constants when traced."""
-    return type(form)(coefficients)  # ty: ignore[invalid-argument-type]
 
 
 def divisors(program: Program) -> Program:
@@ -68,16 +66,21 @@ def bound_below(program: Program, lower: np.ndarray, upper: np.ndarray) -> Certi
     """Bound all outputs of a program from below on the box [lower, upper], by branch and bound.
 
     The bound is within `TIGHTNESS` of the least output that is attained, if that is positive and
-    `MAX_BOXES` suffice; else it is −∞.
+    boxes within the limits on their number and size show it; else it is −∞.
     """
     low, high = lower[None], upper[None]
     # An input that the outputs do not depend on is never split.
-    scale = np.where([k in reached(program) for k in range(len(lower))], upper - lower, np.inf)
-    attained, proven, boxes = np.inf, np.inf, 0
+    split = np.array([k in reached(program) for k in range(len(lower))]) & (upper > lower)
+    scale = np.where(split, upper - lower, np.inf)
+    # No box's middle is a corner of the domain, where a denominator is often least.
+    corners = np.array(list(product(*zip(lower, upper, strict=True))))
+    attained, proven, boxes = evaluate(program, corners).min(), np.inf, 0
     while len(low):
-        attained = min(attained, evaluate(program, (low + high) / 2).min())
+        # np.minimum, unlike min, keeps a NaN
+        attained = np.minimum(attained, evaluate(program, (low + high) / 2).min())
         boxes += len(low)
-        if not attained > 0 or boxes > MAX_BOXES:
+        smallest = np.min(np.max((high - low) / scale, axis=1))
+        if not attained > 0 or boxes > MAX_BOXES or smallest < SMALLEST_BOX:
             return Certificate(-np.inf, boxes)
         bounds = np.min([each.lower for each in enclose(program, low, high)], axis=0)
         done = bounds >= TIGHTNESS * attained
@@ -98,7 +101,7 @@ def reached(program: Program) -> set[int]:
 
 def _halved(low: np.ndarray, high: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Split every box in two along its longest side, relative to the domain's."""
-    side = np.argmax((high - low) / np.where(scale > 0, scale, 1), axis=1)
+    side = np.argmax((high - low) / scale, axis=1)
     rows = np.arange(len(low))
     middle = (low[rows, side] + high[rows, side]) / 2
     left_high, right_low = high.copy(), low.copy()
