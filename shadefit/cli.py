@@ -33,6 +33,17 @@ def _complete_table(incomplete: str) -> list[str]:
     return [name for name in every if name.startswith(incomplete)]
 
 
+def _complete_shader(incomplete: str) -> list[str]:
+    exact = [name for name in ("exact/ps",) if name.startswith(incomplete)]
+    return [*_complete_table(incomplete), *exact]
+
+
+def _complete_language(incomplete: str) -> list[str]:
+    from coefficients.targets import TARGETS
+
+    return [key for key in TARGETS if key.startswith(incomplete)]
+
+
 def _print_version(wanted: bool | None) -> None:
     if wanted:
         print(f"shadefit {version('shadefit')}")
@@ -138,19 +149,92 @@ def _evaluate(
     evaluate.run(integral, given, samples, sequence, seed, json)
 
 
-@app.command("export", epilog="Example: shadefit export published/ps -o ps.json")
+@app.command(
+    "export",
+    epilog="Examples: shadefit export published/ps -o ps.json; "
+    "shadefit export exact/ps --to hlsl --precision half",
+)
 def _export(
     table: Annotated[
-        str, typer.Argument(help="A table's name or path.", autocompletion=_complete_table)
+        str,
+        typer.Argument(
+            help="A table's name or path; with --to, also exact/ps.",
+            autocompletion=_complete_shader,
+        ),
     ],
+    to: Annotated[
+        str | None,
+        typer.Option(
+            help="Language to write as code; by default JSON.",
+            metavar="LANG",
+            autocompletion=_complete_language,
+        ),
+    ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="File; by default standard output.")
     ] = None,
+    precision: Annotated[
+        Literal["half", "float", "double"] | None,
+        typer.Option(help="By default float (JavaScript: double)."),
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Name of the function; by default the paper's.")
+    ] = None,
+    constants: Annotated[
+        Literal["inline", "table"] | None,
+        typer.Option(help="Where the constants stand; by default inline."),
+    ] = None,
 ) -> None:
-    """Write a table's validated JSON."""
-    from shadefit import tables
+    """Write a table's validated JSON, or its functions as code in a language.
 
-    tables.export(table, output)
+    The code is run where its compiler is here, and headed by its measured error.
+    """
+    from shadefit import export
+
+    export.run(table, output, to, precision, name, constants)
+
+
+@app.command("verify", epilog="Example: shadefit verify ps exact/ps --to wgsl --precision all")
+def _verify(
+    tables: Annotated[
+        list[str],
+        typer.Argument(help="Tables' names or paths, exact/ps.", autocompletion=_complete_shader),
+    ],
+    to: Annotated[
+        str, typer.Option(help="Language, or all.", autocompletion=_complete_language)
+    ] = "all",
+    precision: Annotated[
+        Literal["half", "float", "double", "all"] | None,
+        typer.Option(help="By default float (JavaScript: double)."),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Compile and run exported code, and compare it with its form and the exact integral.
+
+    Exit status 1 if any language failed. A compiler that is not here is 'not checked'.
+    """
+    from shadefit import verify
+
+    return verify.run(tables, to, precision, json)
+
+
+@app.command("cost", epilog="Example: shadefit cost ps --throughput")
+def _cost(
+    table: Annotated[
+        str,
+        typer.Argument(
+            help="A table's name or path, or exact/ps.", autocompletion=_complete_shader
+        ),
+    ],
+    throughput: Annotated[
+        bool, typer.Option("--throughput", help="Measure compiled C against JAX.")
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Count the operations of exported functions by kind, beside the closed form's."""
+    from shadefit import cost
+
+    cost.run(table, throughput, json)
 
 
 @app.command("figures", epilog="Example: shadefit figures --out /tmp/figures")

@@ -1,9 +1,7 @@
-"""`shadefit list` and `shadefit export`: what tables there are, and their JSON."""
-
-from pathlib import Path
+"""`shadefit list`: what tables there are."""
 
 from coefficients.catalogue import load, names
-from coefficients.table import Table, serialise, write_whole
+from coefficients.table import Table
 from shadefit.terminal import print_json, print_table
 
 
@@ -22,15 +20,6 @@ def list_tables(json: bool) -> None:
         ],
         "Errors as the table states them, off the grid; 'compare' measures published ones.",
     )
-
-
-def export(name: str, output: Path | None) -> None:
-    """Write a table's JSON to a file, or print it."""
-    text = serialise(load(name))
-    if output is None:
-        print(text, end="")
-    else:
-        write_whole(output, text)
 
 
 def _record(name: str, table: Table) -> dict:

@@ -1,0 +1,237 @@
+"""Exported code held to the form it was printed from, and to the integral it stands for.
+
+The code is compiled and run by its language's toolchain on a low-discrepancy set of points and on
+the corners of the domain. The inputs are rounded to the precision; the float64 form gets the same
+rounded inputs, so that this difference is the code's own. The integral is taken at the points as
+they were, as the user of the code meets it.
+
+What is allowed is set by the same operations, each correctly rounded to the precision in NumPy:
+that is within half a unit in the last place an operation, while the languages grant theirs several.
+To first order, an error of SLACK times half a unit in every operation gives SLACK times the error.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from coefficients.printer import write
+from coefficients.shaders import Shader
+from coefficients.targets import PRECISIONS, target
+from coefficients.toolchains import ToolchainError
+from coefficients.toolchains.registry import toolchain
+from fitting import exact_values
+from fitting.grid import off_grid_points
+from integrals import Axis
+from programs.function import Function
+from programs.program import evaluate
+from programs.trace import trace
+
+# Four units in the last place an operation, where NumPy has half a one.
+SLACK = 8.0
+# What is granted to functions whose every operation happens to be exact in NumPy: a few roundings.
+LEAST_UNITS = 4.0
+EXPONENT = 17
+SEED = 20200718
+# R has no closed form and is dear: it is compared at the first of the points only.
+INTEGRAL_POINTS = {"r": 1 << 12}
+
+Run = Callable[[Function, np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The largest and the rms difference of values from what they should be."""
+
+    largest: float
+    rms: float
+
+    def within(self, other: "Difference") -> bool:
+        """Tell whether both are at most the other's; NaN is not."""
+        return self.largest <= other.largest and self.rms <= other.rms
+
+
+@dataclass(frozen=True)
+class Check:
+    """What came of one language: `status` is "passed", "failed" or "not checked".
+
+    `reason` says why it is not "passed". `form` is the difference from the float64 form at the
+    same rounded inputs, `units` the same in units in the last place of the form's value, `allowed`
+    what `form` may be, `integral` the difference from the exact integral at `integral_points`.
+    """
+
+    language: str
+    precision: str
+    status: str
+    reason: str | None = None
+    tool: str | None = None
+    note: str | None = None
+    points: int = 0
+    form: Difference | None = None
+    units: Difference | None = None
+    allowed: Difference | None = None
+    integral: Difference | None = None
+    integral_points: int = 0
+
+
+class Problem:
+    """A shader in a precision, with the points, and the values that its code should have there."""
+
+    def __init__(self, shader: Shader, precision: str, exponent: int = EXPONENT):
+        """Choose 2^exponent points and the corners; raises ValueError for an unknown precision."""
+        if precision not in PRECISIONS:
+            raise ValueError(f"precision is {precision!r}; allowed: {', '.join(PRECISIONS)}")
+        self.shader, self.precision = shader, precision
+        self.points = np.concatenate(
+            [corners(shader.axes), off_grid_points(shader.axes, exponent, SEED)]
+        )
+        self.programs = {function.name: trace(function) for function in shader.functions}
+
+    def values(self, run: Run) -> np.ndarray:
+        """Call the functions one after the other at every point: (n,) float64."""
+        dtype, results = PRECISIONS[self.precision], np.empty((len(self.points), 0))
+        columns = self.shader.columns(self.points)
+        for function, own in zip(self.shader.functions, columns, strict=True):
+            # Zero keeps its sign and no cosine leaves its domain by being rounded.
+            rows = np.concatenate([results, own.astype(dtype).astype(np.float64)], axis=1)
+            results = np.asarray(run(function, rows), np.float64)
+        return results[:, 0]
+
+    def emulated(self, dtype: type[np.floating]) -> np.ndarray:
+        """Evaluate in NumPy, every operation rounded to `dtype`: (n,)."""
+        return self.values(lambda function, rows: evaluate(self._of(function), rows, dtype))
+
+    @cached_property
+    def form(self) -> np.ndarray:
+        """The float64 form at the rounded inputs (n,)."""
+        return self.emulated(np.float64)
+
+    @cached_property
+    def allowed(self) -> Difference:
+        """The difference from the float64 form that code of this precision may have."""
+        # In double, the form itself is rounded: there its error is float's, in double's units.
+        double = self.precision == "double"
+        dtype = np.float32 if double else PRECISIONS[self.precision]
+        scale = np.finfo(PRECISIONS[self.precision]).eps / np.finfo(dtype).eps
+        rounding = difference(self.emulated(dtype), self.form)
+        if double:
+            # The inputs are doubles here; what float made of them is no error of the operations.
+            single = Problem(self.shader, "float", EXPONENT)
+            rounding = difference(single.emulated(np.float32), single.form)
+        least = LEAST_UNITS * float(np.finfo(PRECISIONS[self.precision]).eps)
+        size = float(np.max(np.abs(self.form)))
+        return Difference(
+            max(SLACK * float(scale) * rounding.largest, least * size),
+            max(SLACK * float(scale) * rounding.rms, least * size),
+        )
+
+    @cached_property
+    def integral(self) -> np.ndarray:
+        """The exact integral at the first of the points, which are the corners and some more."""
+        name = self.shader.integral.name
+        return exact_values(self.shader.integral, self.points[: INTEGRAL_POINTS.get(name)])
+
+    def against_integral(self, values: np.ndarray) -> Difference:
+        """Measure values (n,) against the exact integral."""
+        return difference(values[: len(self.integral)], self.integral)
+
+    def _of(self, function: Function):
+        return self.programs[function.name]
+
+
+def corners(axes: tuple[Axis, ...]) -> np.ndarray:
+    """Give every combination of an axis's ends and middle, (3^axes, axes).
+
+    Of an azimuth that goes all the way round: 0, π/2 and π, which differ.
+    """
+    lines = [
+        (0.0, np.pi / 2, np.pi)
+        if axis.upper - axis.lower > 2 * np.pi
+        else (axis.lower, (axis.lower + axis.upper) / 2, axis.upper)
+        for axis in axes
+    ]
+    return np.array(list(product(*lines)), np.float64)
+
+
+def difference(values: np.ndarray, expected: np.ndarray, units: np.ndarray | None = None):
+    """Give the largest and rms difference (n,), in `units` (n,) where there are some."""
+    apart = np.abs(values - expected)
+    apart = apart if units is None else apart / units
+    return Difference(float(np.max(apart)), float(np.sqrt(np.mean(apart**2))))
+
+
+def precision_of(language: str, wanted: str | None) -> str:
+    """Give the precision that a language is written in by default, or the wanted one.
+
+    Raises ValueError for an unknown language, and for a precision that it has not.
+    """
+    spelled = target(language)
+    if wanted is None:
+        return "float" if "float" in spelled.types else next(iter(spelled.types))
+    if wanted not in spelled.types:
+        raise ValueError(
+            f"precision {wanted!r} is not in {spelled.name}; allowed: {', '.join(spelled.types)}"
+        )
+    return wanted
+
+
+def run_code(problem: Problem, language: str) -> np.ndarray:
+    """Print, compile and run the code of one language at the points: values (n,).
+
+    Raises ValueError for code that cannot be written, ToolchainError for code that is refused or
+    does not run.
+    """
+    chain, precision = toolchain(language), problem.precision
+    source = write(problem.shader.functions, language, precision)
+    return problem.values(lambda function, rows: chain.run(source, function, rows, precision))
+
+
+def check(problem: Problem, language: str) -> Check:
+    """Verify the code of one language in the problem's precision.
+
+    Arguments: `problem`; `language`, a key of TARGETS. Returns the check. Raises ValueError for an
+    unknown language.
+    """
+    precision = problem.precision
+    spelled, chain = target(language), toolchain(language)
+    if precision not in spelled.types:
+        reason = f"{spelled.name} has no {precision} precision"
+        return Check(language, precision, "not checked", reason)
+    reason = chain.missing(precision)
+    if reason is not None:
+        return Check(language, precision, "not checked", reason)
+    try:
+        write(problem.shader.functions, language, precision)
+    except ValueError as error:
+        return Check(language, precision, "not checked", str(error))
+    try:
+        values = run_code(problem, language)
+    except ToolchainError as error:
+        return Check(language, precision, "failed", str(error), chain.tool, chain.note)
+    apart = difference(values, problem.form)
+    spacing = np.spacing(np.abs(problem.form).astype(PRECISIONS[precision])).astype(np.float64)
+    passed = apart.within(problem.allowed)
+    reason = None if passed else _why(apart, problem.allowed)
+    return Check(
+        language,
+        precision,
+        "passed" if passed else "failed",
+        reason,
+        chain.tool,
+        chain.note,
+        len(values),
+        apart,
+        difference(values, problem.form, spacing),
+        problem.allowed,
+        problem.against_integral(values),
+        len(problem.integral),
+    )
+
+
+def _why(apart: Difference, allowed: Difference) -> str:
+    return (
+        f"differs from the float64 form by {apart.largest:.2e}, rms {apart.rms:.2e}; "
+        f"allowed: {allowed.largest:.2e}, rms {allowed.rms:.2e}"
+    )

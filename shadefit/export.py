@@ -1,0 +1,168 @@
+"""`shadefit export`: a table as JSON, or as shader code headed by what it is worth."""
+
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from coefficients.catalogue import load
+from coefficients.cost import Cost, count
+from coefficients.printer import write
+from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
+from coefficients.table import serialise, write_whole
+from coefficients.targets import PRECISIONS, target
+from coefficients.toolchains.registry import toolchain
+from coefficients.verify import Difference, Problem, precision_of, run_code
+from fitting import off_grid_errors
+from programs.function import Function
+from programs.trace import trace
+
+# Half is good enough where it adds no more to a fit's error than the error itself; the closed form,
+# which has none, may lose two bits of the eleven that half has.
+WORTH = 2.0
+HALF_ALLOWANCE = 4 * float(np.finfo(np.float16).eps)
+
+KINDS = ("add", "mul", "div", "sqrt", "transcendental", "select", "sign")
+
+
+def run(
+    name: str,
+    output: Path | None,
+    language: str | None,
+    precision: str | None,
+    function_name: str | None,
+    constants: str | None,
+) -> None:
+    """Write a table's JSON, or its code in a language, to a file, or print it."""
+    if language is None:
+        for option, given in (
+            ("--precision", precision),
+            ("--name", function_name),
+            ("--constants", constants),
+        ):
+            if given is not None:
+                raise ValueError(f"{option} {given!r} is for code: allowed with --to LANG")
+        if name == EXACT_PS:
+            raise ValueError(f"{EXACT_PS} has no coefficients: allowed with --to LANG")
+        text = serialise(load(name))
+    else:
+        text = code(name, language, precision, function_name, constants or "inline")
+    if output is None:
+        print(text, end="")
+    else:
+        write_whole(output, text)
+
+
+def code(
+    name: str,
+    language: str,
+    precision: str | None = None,
+    function_name: str | None = None,
+    constants: str = "inline",
+) -> str:
+    """Give the source file of a table or of 'exact/ps', header and all.
+
+    Arguments: `name`; `language`, a key of TARGETS; `precision`, None for float (JavaScript:
+    double); `function_name`, None for the paper's; `constants`, "inline" or "table". Returns the
+    source; the same call gives the same bytes on a machine. Raises ValueError as `shader` and
+    `write` do.
+    """
+    kind = precision_of(language, precision)
+    chosen = shader(name, kind, function_name)
+    # Before anything is measured: what cannot be written is refused at once.
+    write(chosen.functions, language, kind, constants=constants)
+    command = ["shadefit", "export", name, "--to", language]
+    if precision is not None:
+        command += ["--precision", precision]
+    if function_name is not None:
+        command += ["--name", function_name]
+    if constants != "inline":
+        command += ["--constants", constants]
+    head = _header(chosen, name, language, kind, shlex.join(command))
+    return write(chosen.functions, language, kind, constants=constants, header=head)
+
+
+def described(cost: Cost) -> str:
+    """Write an operation count as text: '63 operations (23 add, 30 mul, …)'."""
+    kinds = [f"{getattr(cost, kind)} {kind}" for kind in KINDS if getattr(cost, kind)]
+    fused = f"; {cost.fma} fma possible" if cost.fma else ""
+    return f"{cost.operations} operations ({', '.join(kinds)}{fused})"
+
+
+def costs(functions: tuple[Function, ...]) -> dict[str, Cost]:
+    """Count the operations of each function, by its name."""
+    return {function.name: count(trace(function)) for function in functions}
+
+
+def _header(
+    chosen: Shader, name: str, language: str, precision: str, command: str
+) -> dict[str, str]:
+    problem = Problem(chosen, precision)
+    measured, how = _measured(problem, language)
+    domain = ", ".join(
+        f"{axis.symbol} in {axis.domain}{'' if axis.unit == '1' else ' ' + axis.unit}"
+        for axis in chosen.axes
+    )
+    head = {
+        "Quantity": f"{chosen.quantity}: {chosen.integral.symbol} = {chosen.integral.definition}",
+        "Equation": f"{chosen.equation} of table {name}" if chosen.form else chosen.equation,
+        "Domain": f"{domain}; all others without unit",
+    }
+    if chosen.remark:
+        head["Arguments"] = chosen.remark
+    own = None
+    if chosen.form is None:
+        head["Error in exact arithmetic"] = "none: it is the integral"
+    else:
+        errors = off_grid_errors(chosen.form)
+        own = Difference(errors.largest, errors.rms)
+        head["Error in exact arithmetic"] = (
+            f"{_text(own)} against the integral ({errors.points} points off the fitting grid)"
+        )
+    head[f"Error in {precision}"] = (
+        f"{_text(measured)} against the integral ({len(problem.integral)} points, corners of the "
+        f"domain included; {how})"
+    )
+    if precision == "half":
+        head["Half precision"] = _verdict(problem, own, measured)
+    head["Cost"] = "; ".join(
+        f"{n}: {described(cost)}" for n, cost in costs(chosen.functions).items()
+    )
+    if chosen.form is not None and chosen.integral.name == "ps":
+        (exact,) = costs(exact_ps(precision)).values()
+        head["Cost of the closed form"] = f"{described(exact)} ({EXACT_PS})"
+    head["Made by"] = command
+    return head
+
+
+def _measured(problem: Problem, language: str) -> tuple[Difference, str]:
+    reason = toolchain(language).missing(problem.precision)
+    if reason is None:
+        values = run_code(problem, language)
+        how = f"this code run in {target(language).name}"
+    else:
+        values = problem.emulated(PRECISIONS[problem.precision])
+        how = f"emulated, every operation rounded: {target(language).name} was not run"
+    return problem.against_integral(values), how
+
+
+def _verdict(problem: Problem, own: Difference | None, measured: Difference) -> str:
+    if own is None:
+        good = measured.largest <= HALF_ALLOWANCE
+        bound = f"largest error {_two(HALF_ALLOWANCE)}"
+    else:
+        # The fit's own error on the same points, so that only the precision differs.
+        own = problem.against_integral(problem.form)
+        good = measured.within(replace(own, largest=WORTH * own.largest, rms=WORTH * own.rms))
+        bound = f"{WORTH:g} times the fit's own {_text(own)} on the same points"
+    return f"{'good enough' if good else 'NOT GOOD ENOUGH'} (bound: {bound})"
+
+
+def _text(errors: Difference) -> str:
+    return f"rms {_two(errors.rms)}, largest {_two(errors.largest)}"
+
+
+def _two(value: float) -> str:
+    # Two digits: more would change with a compiler's version, and no one needs them.
+    return f"{value:.1e}"
