@@ -12,7 +12,7 @@ from jax import Array
 
 from integrals.integral import Axis, Estimate, Integral, leg
 from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
-from integrals.quadrature import checked_rule, gauss_legendre, gauss_legendre_clustered
+from integrals.quadrature import checked_rule, gauss_legendre
 from integrals.root import at_least, positive_root
 from shading import (
     direction,
@@ -149,33 +149,28 @@ def hemisphere_integral(distribution, sigma_u, theta_u, phi, nodes: int) -> Arra
     `distribution` maps unit vectors h, shape (3,), to D(h). In v the integrand has no limit at
     v = −u; in h, with dω_v = 4 (u·h) dω_h, it is smooth. With m, e the unit vectors along u + n
     and u − n and k across them, the upward v are h = cos η (cos ξ m + sin ξ e) + sin η k with
-    (u·n) tan²η < cos 2ξ; tan ξ = sin τ and sin η = sin η_max(τ) sin ω map that to a square
-    (τ, ω) ∈ (−π/2, π/2)², with a boundary layer at the ends of τ as u grazes.
+    (u·n) tan²η < cos 2ξ. The outer variable ω, (1 + u·n)^½ sin η = sin ω, runs over ±π/2 and the
+    inner one is ξ/ξ_max(η): as u grazes, all that happens at a vanishing scale is where cos η and
+    u·h vanish too.
     """
-    tau, tau_weights = gauss_legendre_clustered(nodes)
-    omega, omega_weights = gauss_legendre(nodes, -np.pi / 2, np.pi / 2)
-    half, azimuth = theta_u / 2, jnp.stack([jnp.cos(phi), jnp.sin(phi)])
+    omegas, outer_weights = gauss_legendre(nodes, -np.pi / 2, np.pi / 2)
+    x, inner_weights = gauss_legendre(nodes, -1.0, 1.0)
+    cos_un, half, azimuth = jnp.cos(theta_u), theta_u / 2, jnp.stack([jnp.cos(phi), jnp.sin(phi)])
     m = jnp.concatenate([jnp.sin(half) * azimuth, jnp.cos(half)[None]])
     e = jnp.concatenate([jnp.cos(half) * azimuth, -jnp.sin(half)[None]])
     k = jnp.stack([-azimuth[1], azimuth[0], jnp.zeros(())])
 
-    def row(tau, weight):
-        shrink = jnp.cos(theta_u) * (1 + jnp.sin(tau) ** 2)
-        width = jnp.cos(tau) ** 2 + shrink
-        sin_eta_max = jnp.cos(tau) / jnp.sqrt(width)
-        sin_eta = sin_eta_max * np.sin(omega)
-        # 1 − sin²η without its cancellation
-        cos_eta = jnp.sqrt(np.cos(omega) ** 2 + shrink / width * np.sin(omega) ** 2)
-        secant = jnp.sqrt(1 + jnp.sin(tau) ** 2)
-        cos_xi, sin_xi = 1 / secant, jnp.sin(tau) / secant
-        in_plane = cos_xi * m + sin_xi * e
-        h = cos_eta[:, None] * in_plane + sin_eta[:, None] * k
+    def row(omega, weight):
+        stretch, width = 1 + cos_un, cos_un + jnp.cos(omega) ** 2
+        sin_eta, cos_eta = jnp.sin(omega) / jnp.sqrt(stretch), jnp.sqrt(width / stretch)
+        xi_max = jnp.arcsin(jnp.cos(omega) * jnp.sqrt(stretch / (2 * width)))
+        cos_xi, sin_xi = jnp.cos(xi_max * x), jnp.sin(xi_max * x)
+        h = cos_eta * (cos_xi[:, None] * m + sin_xi[:, None] * e) + sin_eta * k
         cos_uh = cos_eta * (cos_xi * jnp.cos(half) + sin_xi * jnp.sin(half))
-        solid_angle = sin_eta_max * np.cos(omega) * jnp.cos(tau) / secant**2
-        values = jax.vmap(distribution)(h) * cos_uh * solid_angle
-        return weight * jnp.sum(omega_weights * values)
+        mean = jnp.sum(inner_weights * jax.vmap(distribution)(h) * cos_uh)
+        return weight * jnp.cos(omega) / jnp.sqrt(stretch) * xi_max * mean
 
-    return jnp.sum(jax.vmap(row)(tau, tau_weights)) / sigma_u
+    return jnp.sum(jax.vmap(row)(omegas, outer_weights)) / sigma_u
 
 
 def _quadrature(distribution, sigma_u, theta_u, phi, alpha, nodes: int) -> Estimate:
@@ -188,7 +183,7 @@ def _quadrature(distribution, sigma_u, theta_u, phi, alpha, nodes: int) -> Estim
     # D is a ridge of width α. Rules that step over it agree on a wrong value, so that their
     # difference is no evidence: what the ridge can hide, as the rule's convergence bounds it.
     resolution = nodes * alpha
-    hidden = jnp.minimum(1.0, 2 * (1 + resolution) * jnp.exp(-0.8 * resolution))
+    hidden = jnp.minimum(1.0, 2 * (1 + resolution) * jnp.exp(-1.2 * resolution))
     # The rounding of u, h and S counts against σ² and α.
     rounding = np.finfo(float).eps * (4 / sigma_u**2 + 8 / alpha)
     error = estimate.error + hidden * (1 + jnp.abs(estimate.value)) + rounding

@@ -19,18 +19,6 @@ def gauss_legendre(nodes: int, lower: float, upper: float) -> tuple[np.ndarray, 
 
 
 @functools.cache
-def gauss_legendre_clustered(nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Give a rule on [−π/2, π/2]: Gauss–Legendre in s, with the node (π/2) sin(πs/2).
-
-    The nodes crowd towards both ends as the fourth power of the spacing, where integrands with
-    a boundary layer need them.
-    """
-    s, weights = gauss_legendre(nodes, -1.0, 1.0)
-    half = np.pi / 2
-    return half * np.sin(half * s), weights * half**2 * np.cos(half * s)
-
-
-@functools.cache
 def exponential_decay(step: float) -> tuple[np.ndarray, np.ndarray]:
     """Give nodes and weights for ∫₀^∞ f(s) ds, f smooth and falling off like e^(−s) or faster.
 

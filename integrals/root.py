@@ -7,12 +7,19 @@ import jax.numpy as jnp
 from jax import Array
 
 
+@jax.custom_jvp
 def at_least(value: Array, bound: Array | float) -> Array:
-    """Raise `value` to `bound` where it is lower; the derivative at equality is the value's own.
+    """Raise `value` to `bound` where it is lower; the derivative is always the value's own.
 
-    `jnp.maximum` halves the derivative at equality, where theorems make `bound` the exact limit.
+    For bounds that are theorems: only rounding brings a value below one, at points where the bound
+    is attained, and there the bound's derivative (or `jnp.maximum`'s mean of both) is wrong.
     """
     return jnp.where(value < bound, bound, value)
+
+
+@at_least.defjvp
+def _own_derivative(primals, tangents):
+    return at_least(*primals), tangents[0]
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(5,))
