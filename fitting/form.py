@@ -4,6 +4,7 @@ from abc import abstractmethod
 from typing import ClassVar
 
 import equinox as eqx
+import numpy as np
 from jax import Array
 
 from integrals import Axis, Integral
@@ -12,11 +13,12 @@ from integrals import Axis, Integral
 class Form(eqx.Module):
     """An approximant of one integral; calling it evaluates one point.
 
-    Concrete forms are final. `coefficients` is the only leaf. `axes` are the integral's,
+    Concrete forms are final. `coefficients` is the only leaf; a
+    NumPy array makes them constants of a trace. `axes` are the integral's,
     restricted to the domain that the form is fitted on, `equation` says where it is printed.
     """
 
-    coefficients: Array
+    coefficients: Array | np.ndarray
 
     name: ClassVar[str]
     equation: ClassVar[str]

@@ -12,14 +12,14 @@ from jax import Array
 
 from fitting.cells import Cells
 from fitting.grid import Grid, trapezoid_grid
-from fitting.paper import RationalG, RationalPs, terms
+from fitting.paper import RationalG, terms
 from fitting.solve import solve_linear, solve_nonlinear
 
 # Denominators are pushed up to this at nodes of a grid of their own, PENALTY_NODES an axis.
 DENOMINATOR_FLOOR = 0.02
-PENALTY_NODES = 33
+PENALTY_NODES = 17
 # The joint fit ends here: by then it is within 0.1 % of the best that any c₀ … c₅ can do.
-JOINT_STEPS = 60
+JOINT_STEPS = 40
 # It uses every other node of a grid that has more than this many an axis: the surfaces are smooth,
 # and the time goes with the nodes. Its errors are measured on all of them, and between.
 JOINT_NODES = 33
@@ -103,18 +103,19 @@ def _fit_rows(grid: Grid, targets: Array, denominator_terms: int) -> Array:
 
 
 def _fit_jointly(grid: Grid, cells: Cells, rows: Array) -> Array:
-    alphas, thetas = (jnp.asarray(nodes) for nodes in grid.nodes)
-    root = jnp.sqrt(jnp.asarray(grid.weights)).reshape(len(alphas), len(thetas), 1)
+    features, beta = _features(grid)
+    numerator = jnp.concatenate([jnp.ones((len(beta), 1)), features], axis=1)
+    root = jnp.sqrt(jnp.asarray(grid.weights)).reshape(*cells.residuals.shape, 1)
     penalty_features = _penalty_features(grid)
+    offset = jnp.array([0.5, 0, 0, 0, 0, 0])
 
     @jax.jit
     def fit(start: Array, factors: Array, optimum: Array) -> Array:
         def residual(z: Array) -> Array:
-            form = RationalPs(z.reshape(6, 27))
-            material = jax.vmap(jax.vmap(form.material, (None, 0)), (0, None))(alphas, thetas)
-            error = root * jnp.einsum("tij,atj->ati", factors, material - optimum)
-            denominators = 1 + penalty_features @ form.coefficients[:, 14:].T
-            return jnp.concatenate([error.ravel(), _penalty(denominators)])
+            p, q = z.reshape(6, 27)[:, :14].T, z.reshape(6, 27)[:, 14:].T
+            material = offset + beta[:, None] * (numerator @ p) / (1 + features @ q)
+            error = jnp.einsum("tij,atj->ati", factors, material.reshape(optimum.shape) - optimum)
+            return jnp.concatenate([(root * error).ravel(), _penalty(1 + penalty_features @ q)])
 
         return solve_nonlinear(residual, start, JOINT_STEPS)
 

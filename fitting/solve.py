@@ -23,11 +23,11 @@ def solve_nonlinear(residual: Residual, start: Array, steps: int = 300) -> Array
     """Minimise |residual(z)|² from `start` (n,) by Optimistix's Levenberg–Marquardt.
 
     The unknowns are scaled by the columns of the Jacobian at the start, so that damping treats
-    them alike. Stops at a relative change of 1e-9 or after `steps`; judge the result by its
+    them alike. Stops at a relative change of 1e-7 or after `steps`; judge the result by its
     residual, not by the solver's word.
     """
     scale = _column_scale(residual, start)
-    solver = optx.LevenbergMarquardt(rtol=1e-9, atol=1e-12, linear_solver=lx.Normal(lx.Cholesky()))
+    solver = optx.LevenbergMarquardt(rtol=1e-7, atol=1e-9, linear_solver=lx.Normal(lx.Cholesky()))
     solution = optx.least_squares(
         lambda z, _: residual(z * scale), solver, start / scale, max_steps=steps, throw=False
     )

@@ -258,6 +258,8 @@ def _list(json: Json = False) -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit status 2 with one line on standard error for bad input."""
     os.environ.setdefault("JAX_ENABLE_X64", "1")
+    # One thread: more would change the order of sums, and so the last digits, with the machine.
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
     given = sys.argv[1:] if arguments is None else arguments
     try:
         status = app(given or ["--help"], standalone_mode=False)
@@ -265,7 +267,9 @@ def main(arguments: list[str] | None = None) -> None:
         message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
         _fail(message, 2)
     except (typer.Abort, KeyboardInterrupt):
-        _fail("interrupted; nothing was written", 130)
+        print("shadefit: interrupted; no table was written", file=sys.stderr, flush=True)
+        # At once: leaving in the ordinary way would wait for compilations to end.
+        os._exit(130)
     except BrokenPipeError:
         # The reader of our output has gone: not an error, but Python would complain at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

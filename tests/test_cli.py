@@ -18,6 +18,7 @@ from integrals import INTEGRALS
 from shadefit.cli import main
 from shadefit.options import angle
 
+NAMES = names()
 PS_POINT = ["--alpha", "0.35", "--theta-f", "45deg", "--theta-u", "30deg", "--phi", "90deg"]
 POINTS = {
     "ps": PS_POINT,
@@ -42,6 +43,13 @@ def refuses(capsys, *arguments):
     assert err.startswith("shadefit: ")
     assert err.count("\n") == 1
     return err
+
+
+def is_density(text):
+    try:
+        return math.isfinite(float(text)) and float(text) >= 0
+    except ValueError:
+        return False
 
 
 @pytest.mark.parametrize("name", INTEGRALS)
@@ -188,33 +196,25 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_work(capsys, tmp_
 @settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
 @given(value=st.floats(allow_nan=True, allow_infinity=True) | st.text(max_size=12))
 @example(value=math.nan)
-@example(value="٣")
-def test_any_alpha_is_evaluated_or_refused(capsys, value):
+@example(value="1e999")
+@example(value="--json")
+def test_any_density_is_evaluated_or_refused(capsys, value):
     text = str(value)
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    arguments = [
-        "evaluate",
-        "r",
-        f"--alpha={text}",
-        "--theta-f",
-        "0.3",
-        "--samples",
-        "64",
-        "--json",
-    ]
-    if 0 < number <= 1:
-        status, out, _ = run(capsys, *arguments)
-        assert status == 0
-        assert 0 <= json.loads(out)["legs"]["quadrature"]["value"] <= 1
+    arguments = ["evaluate", "q", f"--density={text}", "--samples", "64", "--json"]
+    status, out, err = run(capsys, *arguments)
+    if status == 0:
+        result = json.loads(out)
+        assert result["arguments"]["density"] == float(text)
+        assert 0 <= result["legs"]["closed_form"]["value"] <= 1
     else:
-        refuses(capsys, *arguments)
+        assert status == 2
+        assert out == ""
+        assert err.count("\n") == 1
+        assert not is_density(text)
 
 
 @settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
-@given(text=st.text(max_size=20).filter(lambda t: t not in names()))
+@given(text=st.text(max_size=20).filter(lambda t: t not in NAMES))
 def test_any_other_table_name_is_refused(capsys, text):
     refuses(capsys, "export", "--", text)
 
