@@ -11,7 +11,7 @@ from fitting.cells import DIRECTIONS_PER_ANGLE, fit_cells, largest_error
 from fitting.certificate import Certificate, certify_denominators
 from fitting.errors import Errors, exact_estimates, form_values, measure, off_grid_errors
 from fitting.form import Form
-from fitting.grid import Grid, Weight, gauss_grid, trapezoid_grid
+from fitting.grid import WEIGHTS, Grid, Weight, gauss_grid, trapezoid_grid
 from fitting.paper import QuadraticQ, RationalG, RationalPs, RationalR
 from fitting.rational import fit_quadratic_q, fit_rational_g, fit_rational_ps, fit_rational_r
 
@@ -40,13 +40,16 @@ def refit(name: str, count: int, weight: Weight, progress: Progress = lambda _: 
     """Refit the paper's form of 'ps', 'g', 'q' or 'r' on `count` nodes an axis.
 
     `weight` is the measure of light directions in the fit of P_s; the other integrals have none.
-    `progress` is told of each stage. Raises ValueError for another name, for a grid with fewer
-    nodes than the form has degrees of freedom, and for a fit that has a pole in its domain.
+    `progress` is told of each stage. Raises ValueError for another name or weight, for a grid with
+    fewer nodes than the form has degrees of freedom or too many to hold, and for a fit that has a
+    pole in its domain.
     """
     if name not in REFITS:
         raise ValueError(f"name = {name!r}: allowed are {', '.join(REFITS)}")
     if not MIN_NODES <= count <= MAX_NODES:
         raise ValueError(f"grid = {count}: allowed are {MIN_NODES} to {MAX_NODES} nodes an axis")
+    if weight not in WEIGHTS:
+        raise ValueError(f"weight = {weight!r}: allowed are {', '.join(WEIGHTS)}")
     fit = REFITS[name](count, weight, progress)
     if not fit.certificate.holds:
         raise ValueError(

@@ -2,7 +2,8 @@
 
 No fit starts from published constants. A rational form starts from the best polynomial, its
 denominator one; a penalty on small denominators then keeps Levenberg–Marquardt from stepping
-across a pole, and every start that was tried ends in the same minimum (tests/test_rational.py).
+across a pole, and every start without a pole in the domain that was tried ends in the same minimum
+(tests/test_rational.py); starts with one do not.
 """
 
 import jax
