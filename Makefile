@@ -36,6 +36,10 @@ test-slow: setup  ## the full refits and the large sweeps
 figures: setup  ## draw the figures of README.md into docs/figures
 	$(BIN)/shadefit figures
 
+verify: toolchains  ## compile, run and compare the exported code of every table, in every language
+	$(BIN)/shadefit verify ps g q r published/ps published/g published/q published/r exact/ps \
+	    --precision all
+
 bench: setup  ## reproduce the claims of speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py
 

@@ -13,7 +13,7 @@ from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
 from coefficients.table import serialise, write_whole
 from coefficients.targets import PRECISIONS, target
 from coefficients.toolchains.registry import toolchain
-from coefficients.verify import Difference, Problem, precision_of, run_code
+from coefficients.verify import Difference, Problem, precision_of, run_code, text_of
 from fitting import off_grid_errors
 from programs.function import Function
 from programs.trace import trace
@@ -118,10 +118,10 @@ def _header(
         errors = off_grid_errors(chosen.form)
         own = Difference(errors.largest, errors.rms)
         head["Error in exact arithmetic"] = (
-            f"{_text(own)} against the integral ({errors.points} points off the fitting grid)"
+            f"{text_of(own)} against the integral ({errors.points} points off the fitting grid)"
         )
     head[f"Error in {precision}"] = (
-        f"{_text(measured)} against the integral ({len(problem.integral)} points, corners of the "
+        f"{text_of(measured)} against the integral ({len(problem.integral)} points, corners of the "
         f"domain included; {how})"
     )
     if precision == "half":
@@ -149,20 +149,11 @@ def _measured(problem: Problem, language: str) -> tuple[Difference, str]:
 
 def _verdict(problem: Problem, own: Difference | None, measured: Difference) -> str:
     if own is None:
-        good = measured.largest <= HALF_ALLOWANCE
-        bound = f"largest error {_two(HALF_ALLOWANCE)}"
+        good = measured.largest <= HALF_ALLOWANCE and not measured.not_finite
+        bound = f"largest error {HALF_ALLOWANCE:.1e}"
     else:
         # The fit's own error on the same points, so that only the precision differs.
         own = problem.against_integral(problem.form)
         good = measured.within(replace(own, largest=WORTH * own.largest, rms=WORTH * own.rms))
-        bound = f"{WORTH:g} times the fit's own {_text(own)} on the same points"
+        bound = f"{WORTH:g} times the fit's own {text_of(own)} on the same points"
     return f"{'good enough' if good else 'NOT GOOD ENOUGH'} (bound: {bound})"
-
-
-def _text(errors: Difference) -> str:
-    return f"rms {_two(errors.rms)}, largest {_two(errors.largest)}"
-
-
-def _two(value: float) -> str:
-    # Two digits: more would change with a compiler's version, and no one needs them.
-    return f"{value:.1e}"

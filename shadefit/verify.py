@@ -56,7 +56,7 @@ def _print(name: str, checks: list[Check]) -> None:
         f"{name}: exported code against its float64 form and the exact integral",
         [
             *("language", "precision", "status", "points", "form: largest", "rms"),
-            *("ULP: largest", "rms", "allowed", "rms", "integral: largest", "rms"),
+            *("ULP: largest", "rms", "allowed", "rms", "integral: largest", "rms", "not finite"),
         ],
         [_row(each) for each in checks],
         f"allowed: {SLACK:g} times the error of the same operations, each correctly rounded.",
@@ -73,7 +73,7 @@ def _print(name: str, checks: list[Check]) -> None:
 def _row(each: Check) -> list[str]:
     row = [each.language, each.precision, each.status]
     if each.form is None or each.units is None or each.allowed is None or each.integral is None:
-        return [*row, *["—"] * 9]
+        return [*row, *["—"] * 10]
     return [
         *row,
         f"{each.points:,}",
@@ -85,4 +85,5 @@ def _row(each: Check) -> list[str]:
         f"{each.allowed.rms:.1e}",
         f"{each.integral.largest:.2e}",
         f"{each.integral.rms:.2e}",
+        str(each.form.not_finite),
     ]
