@@ -7,7 +7,6 @@ import tempfile
 import numpy as np
 import pytest
 
-from programs.function import Function, Parameter
 from coefficients.toolchains import (
     TOOLCHAINS,
     ToolchainError,
@@ -17,6 +16,7 @@ from coefficients.toolchains import (
     process,
     toolchain,
 )
+from programs.function import Function, Parameter
 
 RATIO = Function("Ratio", "one in, one out", (Parameter("x", (-1.0, 1.0)),), None, "y", lambda x: x)
 MEAN = Function(

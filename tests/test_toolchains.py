@@ -5,9 +5,9 @@ import tempfile
 import numpy as np
 import pytest
 
-from programs.function import Function, Parameter
 from coefficients.toolchains import cuda, hlsl, osl, toolchain
 from coefficients.toolchains.precision import TYPES
+from programs.function import Function, Parameter
 
 UNIT = (-1.0, 1.0)
 SCALAR = Function("Ratio", "one in, one out", (Parameter("x", UNIT),), None, "y", lambda x: x)
