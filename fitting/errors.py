@@ -14,7 +14,7 @@ from integrals import INTEGRALS, Estimate, Integral
 # log₂ of the size of the off-grid set: R, which has no closed form, is dear.
 OFF_GRID_EXPONENT = {"ps": 17, "g": 16, "q": 16, "r": 12}
 OFF_GRID_SEED = 20200717
-# 32² nodes give R to 1e-8 for α ≥ 0.15 (tests/test_r.py).
+# 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py).
 LEG_OPTIONS = {"r": {"nodes": 32}}
 _BATCH = {"ps": 8192, "g": 8192, "q": 8192, "r": 64}
 
