@@ -119,10 +119,6 @@ class Table(_Part):
     `provenance`; a published one has `publication` instead.
     """
 
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, strict=True, json_schema_serialization_defaults_required=True
-    )
-
     schema_: Literal["shadefit.table/1"] = Field(alias="schema")
     name: Name
     quantity: Literal["ps", "g", "q", "r"]
@@ -160,7 +156,7 @@ def _shape(nested: list) -> tuple[int, ...]:
 
 def json_schema() -> dict[str, Any]:
     """Give the JSON Schema that every table is validated against."""
-    return Table.model_json_schema(mode="serialization", by_alias=True)
+    return Table.model_json_schema(by_alias=True)
 
 
 def parse(text: str, source: str) -> Table:
@@ -172,13 +168,19 @@ def parse(text: str, source: str) -> Table:
         data = json.loads(text, parse_constant=_refuse_constant)
         return Table.model_validate(data, strict=True)
     except ValidationError as error:
-        first = error.errors()[0]
+        first = error.errors(include_input=False, include_url=False)[0]
         place = ".".join(str(part) for part in first["loc"]) or "the table"
         message = first["msg"].removeprefix("Value error, ")
-        raise ValueError(f"{source}: {place}: {message}") from None
+        raise ValueError(f"{source}: {_one_line(place)}: {_one_line(message)}") from None
     except (ValueError, RecursionError) as error:
-        reason = " ".join(str(error).split()) or "nested too deeply"
-        raise ValueError(f"{source} is no JSON table: {reason[:200]}") from None
+        reason = _one_line(str(error)) or "nested too deeply"
+        raise ValueError(f"{source} is no JSON table: {reason}") from None
+
+
+def _one_line(text: str) -> str:
+    """Make what may come from a hostile file fit to be shown: short, and without control codes."""
+    shown = " ".join("".join(c if c.isprintable() else " " for c in text[:300]).split())
+    return shown if len(text) <= 200 else f"{shown[:200]}…"
 
 
 def read(path: Path) -> Table:

@@ -1,0 +1,505 @@
+"""Tables as files: what is written comes back, and nothing but a table is read."""
+
+import copy
+import errno
+import json
+import os
+import re
+import stat
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from coefficients import table as module
+from coefficients.catalogue import FOLDER
+from coefficients.table import (
+    MAX_BYTES,
+    SCHEMA,
+    Table,
+    json_schema,
+    parse,
+    read,
+    serialise,
+    write_whole,
+)
+
+SHIPPED = sorted([*FOLDER.glob("published/*.json"), *FOLDER.glob("refit/*.json")])
+TEXT = (FOLDER / "refit" / "r.json").read_text(encoding="utf-8")
+PUBLISHED = (FOLDER / "published" / "ps.json").read_text(encoding="utf-8")
+
+
+def refused(text: str) -> str:
+    """Check that a text is refused in one line that names its source; give the line."""
+    with pytest.raises(ValueError) as caught:
+        parse(text, "some/file.json")
+    message = str(caught.value)
+    assert type(caught.value) is ValueError
+    assert message.isprintable()  # which a line break is not
+    assert message.startswith("some/file.json")
+    assert len(message) < 500
+    return message
+
+
+def changed(change, text: str = TEXT) -> str:
+    data = json.loads(text)
+    change(data)
+    return json.dumps(data)
+
+
+# What comes back
+
+
+def test_eight_tables_are_shipped():
+    names = [f"{path.parent.name}/{path.stem}" for path in SHIPPED]
+    assert names == [
+        f"{folder}/{q}" for folder in ("published", "refit") for q in ("g", "ps", "q", "r")
+    ]
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_shipped_tables_are_written_back_byte_for_byte(path):
+    text = path.read_text(encoding="utf-8")
+    assert serialise(read(path)) == text
+
+
+NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    numbers=st.lists(NUMBERS, min_size=17, max_size=17),
+    rms=st.floats(0, 1e300),
+    place=st.dictionaries(st.text(max_size=8), NUMBERS, max_size=3),
+    equation=st.text(max_size=40),
+)
+def test_any_table_survives_writing_and_reading_bit_for_bit(numbers, rms, place, equation):
+    data = json.loads(TEXT)
+    data["coefficients"], data["equation"] = numbers, equation
+    data["errors"]["on_grid"].update(rms=rms, where=place)
+    table = Table.model_validate(data)
+    text = serialise(table)
+    again = parse(text, "itself")
+    assert repr(again.coefficients) == repr(numbers)  # −0.0 is not 0.0
+    assert again == table
+    assert serialise(again) == text
+
+
+def test_keys_are_written_in_a_fixed_order_whatever_order_they_are_read_in():
+    def backwards(value):
+        if isinstance(value, dict):
+            return {key: backwards(value[key]) for key in reversed(value)}
+        return [backwards(each) for each in value] if isinstance(value, list) else value
+
+    data = json.loads(TEXT)
+    assert list(data) == [
+        "schema", "name", "quantity", "form", "equation", "arguments", "coefficients",
+        "coefficient_names", "grid", "weight", "reference", "errors", "certificates", "provenance",
+    ]  # fmt: skip
+    turned = json.dumps(backwards(data))
+    assert turned != json.dumps(data)
+    where = data["errors"]["on_grid"]["where"]
+    written = json.loads(serialise(parse(turned, "itself")))
+    assert written == data
+    assert list(written) == list(data)
+    assert list(written["errors"]["on_grid"]) == ["rms", "max", "where", "points"]
+    # Names of axes are data: their order is the reader's to keep.
+    assert set(written["errors"]["on_grid"]["where"]) == set(where)
+
+
+SHIPPED_SCHEMA = json.loads((FOLDER / "table.schema.json").read_text(encoding="utf-8"))
+
+
+def test_the_shipped_schema_is_the_one_that_tables_are_held_to():
+    assert json_schema() == SHIPPED_SCHEMA
+    assert SHIPPED_SCHEMA["properties"]["schema"]["const"] == SCHEMA
+    assert SHIPPED_SCHEMA["additionalProperties"] is False
+
+
+TYPES = {
+    "object": dict,
+    "array": list,
+    "string": str,
+    "integer": int,
+    "number": (int, float),
+    "null": type(None),
+}
+# What each keyword of a schema asks of a value that it is about.
+KEYWORDS = {
+    "const": lambda value, wanted: value == wanted,
+    "enum": lambda value, wanted: value in wanted,
+    "minimum": lambda value, least: value >= least,
+    "minItems": lambda value, least: len(value) >= least,
+    "maxItems": lambda value, most: len(value) <= most,
+    "maxLength": lambda value, most: len(value) <= most,
+    "pattern": lambda value, pattern: re.search(pattern, value) is not None,
+    "required": lambda value, keys: set(keys) <= set(value),
+    "items": lambda value, schema: all(conforms(each, schema) for each in value),
+    "anyOf": lambda value, schemas: any(conforms(value, each) for each in schemas),
+    "$ref": lambda value, ref: conforms(value, SHIPPED_SCHEMA["$defs"][ref.split("/")[-1]]),
+}
+ANNOTATIONS = {"title", "description", "default", "$defs"}
+
+
+def conforms(value, schema: dict) -> bool:
+    """Tell whether a value conforms to a JSON Schema; an unknown keyword is a KeyError."""
+    kind = schema.get("type")
+    if kind and (not isinstance(value, TYPES[kind]) or isinstance(value, bool)):
+        return False
+    known = schema.get("properties", {})
+    others = schema.get("additionalProperties", True)
+    if kind == "object":
+        for key, each in value.items():
+            rule = known.get(key, others)
+            if rule is False or (isinstance(rule, dict) and not conforms(each, rule)):
+                return False
+    handled = ANNOTATIONS | {"type", "properties", "additionalProperties"}
+    return all(KEYWORDS[key](value, schema[key]) for key in schema if key not in handled)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_shipped_tables_conform_to_the_shipped_schema(path):
+    assert conforms(json.loads(path.read_text(encoding="utf-8")), SHIPPED_SCHEMA)
+
+
+# What is refused
+
+
+def put(*path_and_value):
+    """Make a change that puts a value at a path."""
+    *path, last, value = path_and_value
+
+    def change(data):
+        for key in path:
+            data = data[key]
+        data[last] = value
+
+    return change
+
+
+def drop(key):
+    return lambda data: data.pop(key)
+
+
+WRONG = {
+    "another schema": put("schema", "shadefit.table/2"),
+    "no schema": drop("schema"),
+    "no coefficients": drop("coefficients"),
+    "no names": drop("coefficient_names"),
+    "an unknown key": put("comment", "hello"),
+    "a key of two lines": put("com\nment", "hello"),
+    "a key that colours the terminal": put("\x1b[31mcomment\u2028", "hello"),
+    "a key without end": put("comment" * 10_000, "hello"),
+    "an unknown key below": put("errors", "on_grid", "median", 0.1),
+    "a name with a path": put("name", "../../etc/passwd"),
+    "a name in capitals": put("name", "PS"),
+    "an unknown quantity": put("quantity", "s"),
+    "too few coefficients": lambda data: data["coefficients"].pop(),
+    "a coefficient in words": put("coefficients", 3, "0.5"),
+    "a coefficient that is true": put("coefficients", 3, True),
+    "a coefficient that is null": put("coefficients", 3, None),
+    "coefficients one level too deep": put("coefficients", [[[1.0]]]),
+    "coefficients as an object": put("coefficients", {"0": 1.0}),
+    "no coefficient at all": lambda data: data.update(coefficients=[], coefficient_names=[]),
+    "rows of different length": lambda data: data.update(
+        coefficients=[[1.0, 2.0], [3.0]], coefficient_names=[["a", "b"], ["c"]]
+    ),
+    "an empty domain": put("arguments", 0, "domain", [1.0, 1.0]),
+    "a domain the wrong way round": put("arguments", 0, "domain", [1.0, 0.5]),
+    "a domain of three ends": put("arguments", 0, "domain", [0.1, 0.5, 1.0]),
+    "degrees": put("arguments", 0, "unit", "deg"),
+    "no arguments": put("arguments", []),
+    "nine arguments": lambda data: data.update(arguments=data["arguments"] * 5),
+    "a grid of one node": put("grid", "nodes", 0, "count", 1),
+    "a grid of half a node": put("grid", "nodes", 0, "count", 2.5),
+    "a negative error": put("errors", "on_grid", "rms", -1e-3),
+    "an error at no point": put("errors", "off_grid", "points", 0),
+    "an unknown weight": put("weight", "sine"),
+    "an unknown leg": put("reference", "leg", "guess"),
+    "a list for a table": lambda data: None,
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_no_table_is_refused_in_one_line(name):
+    text = changed(WRONG[name])
+    refused(f"[{text}]" if name == "a list for a table" else text)
+
+
+# What a schema cannot say: the order of two numbers, and that two shapes are the same.
+BEYOND_A_SCHEMA = {
+    "too few coefficients",
+    "rows of different length",
+    "an empty domain",
+    "a domain the wrong way round",
+}
+
+
+@pytest.mark.parametrize("name", sorted(WRONG.keys() - BEYOND_A_SCHEMA))
+def test_the_schema_refuses_what_reading_refuses(name):
+    text = changed(WRONG[name])
+    value = json.loads(f"[{text}]" if name == "a list for a table" else text)
+    assert not conforms(value, SHIPPED_SCHEMA)
+
+
+def test_the_untouched_text_of_those_is_a_table():
+    assert parse(changed(lambda data: None), "itself") == parse(TEXT, "itself")
+
+
+def test_a_message_says_where_and_what():
+    assert "coefficients" in refused(changed(put("coefficients", 3, "0.5")))
+    message = refused(changed(lambda data: data["coefficients"].pop()))
+    assert "(16,)" in message
+    assert "(17,)" in message
+    assert "quantity" in refused(changed(put("quantity", "s")))
+    assert "comment" in refused(changed(put("comment", "hello")))
+
+
+NO_JSON = {
+    "nothing": "",
+    "a blank": " \n",
+    "cut off": TEXT[:700],
+    "something behind it": TEXT + "x",
+    "a number": "1e5",
+    "a string": '"ps"',
+    "null": "null",
+    "nested too deeply": "[" * 100_000,
+    "nested too deeply, but closed": '{"a":' * 20_000 + "1" + "}" * 20_000,
+    "single quotes": TEXT.replace('"', "'"),
+    "no text": "\x00\x01\x02",
+    "half a character": '"\ud800"',
+    "NaN": TEXT.replace("0.33377003831591", "NaN"),
+    "infinity": TEXT.replace("0.33377003831591", "Infinity"),
+    "minus infinity": TEXT.replace("0.33377003831591", "-Infinity"),
+    "a number beyond float64": TEXT.replace("0.33377003831591", "1e999"),
+    "digits without end": TEXT.replace("0.33377003831591", "9" * 5000),
+    "an integer beyond float64": TEXT.replace("0.33377003831591", "1" + "0" * 400),
+    "a name without end": TEXT.replace('"rational-r"', '"' + "r" * 10_000 + '"'),
+    "too many coefficients": changed(
+        lambda d: d.update(coefficients=[0.5] * 5000, coefficient_names=["c"] * 5000)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NO_JSON)
+def test_hostile_text_is_refused_in_one_line(name):
+    assert NO_JSON[name] != TEXT
+    refused(NO_JSON[name])
+
+
+JUNK = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(10**400), 10**400)
+    | st.floats()
+    | st.text(max_size=10),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=5), inner),
+    max_leaves=8,
+)
+
+
+def places(value, path=()):
+    """Give the paths of everything in a JSON value."""
+    items = value.items() if isinstance(value, dict) else enumerate(value)
+    for key, each in items:
+        yield (*path, key)
+        if isinstance(each, dict | list) and each:
+            yield from places(each, (*path, key))
+
+
+DATA = {"refit": json.loads(TEXT), "published": json.loads(PUBLISHED)}
+PLACES = {name: sorted(places(data), key=str) for name, data in DATA.items()}
+
+
+def read_or_refuse(text: str) -> Table | None:
+    """Parse; anything but a table or a ValueError of one line fails the test."""
+    try:
+        return parse(text, "some/file.json")
+    except ValueError as error:
+        assert type(error) is ValueError
+        assert str(error).isprintable()
+        assert str(error).startswith("some/file.json")
+        return None
+
+
+@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    which=st.sampled_from(sorted(DATA)),
+    edits=st.lists(
+        st.tuples(st.integers(0, 10**6), st.sampled_from(["put", "drop", "add", "double"]), JUNK),
+        min_size=1,
+        max_size=3,
+    ),
+)
+def test_mutated_tables_are_refused_or_are_tables(which, edits):
+    data = copy.deepcopy(DATA[which])
+    for number, kind, junk in edits:
+        *path, last = PLACES[which][number % len(PLACES[which])]
+        holder = data
+        try:
+            for key in path:
+                holder = holder[key]
+            holder[last]
+        except (KeyError, IndexError, TypeError):
+            continue  # an earlier edit took it away
+        if kind == "drop":
+            del holder[last]
+        elif kind == "put":
+            holder[last] = junk
+        elif isinstance(holder, list):
+            holder.append(holder[last] if kind == "double" else junk)
+        else:
+            holder[f"{last}2" if kind == "double" else str(junk)[:20]] = junk
+    table = read_or_refuse(json.dumps(data))
+    # What passes is a table in every respect: it is written and read back unchanged.
+    if table is not None:
+        assert parse(serialise(table), "itself") == table
+
+
+@settings(max_examples=300, deadline=None)
+@given(at=st.integers(0, len(TEXT) - 1), length=st.integers(0, 40), put_in=st.text(max_size=6))
+def test_text_that_is_cut_and_patched_is_refused_or_is_a_table(at, length, put_in):
+    table = read_or_refuse(TEXT[:at] + put_in + TEXT[at + length :])
+    if table is not None:
+        assert parse(serialise(table), "itself") == table
+
+
+# Files
+
+
+def one_line(error) -> str:
+    message = str(error.value)
+    assert "\n" not in message
+    return message
+
+
+def test_a_file_that_cannot_be_read_is_refused_with_its_name(tmp_path, monkeypatch):
+    binary, large, missing = (
+        tmp_path / name for name in ("binary.json", "large.json", "none.json")
+    )
+    binary.write_bytes(bytes(range(256)) * 4)
+    large.write_bytes(b" " * (MAX_BYTES + 1))
+    for path, why in ((binary, "UTF-8"), (large, "larger"), (missing, "no such"), (tmp_path, "no")):
+        with pytest.raises(ValueError, match=why) as error:
+            read(path)
+        assert str(path) in one_line(error)
+    for bad in ("a\0b.json", "x" * 5000 + ".json"):
+        with pytest.raises(ValueError) as error:
+            read(Path(bad))
+        one_line(error)
+    locked = tmp_path / "locked.json"
+    locked.write_text(TEXT)
+
+    def denied(*_, **__):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_text", denied)
+    with pytest.raises(ValueError, match="Permission denied") as error:
+        read(locked)
+    one_line(error)
+
+
+def test_a_fifo_is_no_table(tmp_path):
+    """Nor does opening one wait for a writer."""
+    os.mkfifo(tmp_path / "fifo.json")
+    with pytest.raises(ValueError, match="no such file"):
+        read(tmp_path / "fifo.json")
+
+
+def test_writing_makes_the_folder_and_leaves_only_the_file(tmp_path):
+    path = tmp_path / "new" / "deeper" / "r.json"
+    write_whole(path, TEXT)
+    assert path.read_bytes() == TEXT.encode()
+    assert os.listdir(path.parent) == ["r.json"]
+    assert stat.S_IMODE(path.stat().st_mode) == 0o644
+    write_whole(path, "shorter\n")
+    assert path.read_text() == "shorter\n"
+    assert os.listdir(path.parent) == ["r.json"]
+
+
+class FullDisk:
+    """A file that takes half of what it is given."""
+
+    def __init__(self, file):
+        self.file = file
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    def write(self, text):
+        self.file.write(text[: len(text) // 2])
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("stage", ["write", "chmod", "replace"])
+@pytest.mark.parametrize("failure", [OSError(errno.ENOSPC, "No space left"), KeyboardInterrupt()])
+def test_a_failure_at_any_stage_leaves_the_old_file_and_nothing_else(
+    tmp_path, monkeypatch, stage, failure
+):
+    path = tmp_path / "r.json"
+    path.write_text("old")
+
+    def fail(*_, **__):
+        raise failure
+
+    real = os.fdopen
+
+    def opened(*arguments, **options):
+        file = FullDisk(real(*arguments, **options))
+        if isinstance(failure, KeyboardInterrupt):
+            file.write = fail
+        return file
+
+    if stage == "write":
+        monkeypatch.setattr(module.os, "fdopen", opened)
+    else:
+        monkeypatch.setattr(module.os, stage, fail)
+    expected = KeyboardInterrupt if isinstance(failure, KeyboardInterrupt) else ValueError
+    with pytest.raises(expected) as error:
+        write_whole(path, TEXT)
+    monkeypatch.undo()
+    assert path.read_text() == "old"
+    assert os.listdir(tmp_path) == ["r.json"]
+    if expected is ValueError:
+        assert str(path) in one_line(error)
+
+
+def test_text_that_cannot_be_encoded_leaves_the_old_file(tmp_path):
+    path = tmp_path / "r.json"
+    path.write_text("old")
+    with pytest.raises(ValueError):
+        write_whole(path, "\ud800")
+    assert path.read_text() == "old"
+    assert os.listdir(tmp_path) == ["r.json"]
+
+
+def test_a_folder_that_cannot_be_made_or_written_is_named(tmp_path):
+    in_the_way = tmp_path / "file"
+    in_the_way.write_text("here")
+    with pytest.raises(ValueError, match="cannot be written") as error:
+        write_whole(in_the_way / "r.json", TEXT)
+    assert str(in_the_way) in one_line(error)
+    with pytest.raises(ValueError, match="cannot be written"):
+        write_whole(Path("/proc/no-such-folder/r.json"), TEXT)
+    with pytest.raises(ValueError, match="cannot be written"):
+        write_whole(tmp_path / ("x" * 300), TEXT)
+    assert in_the_way.read_text() == "here"
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_a_folder_is_not_replaced_by_a_file(tmp_path):
+    (tmp_path / "r.json").mkdir()
+    with pytest.raises(ValueError, match="cannot be written"):
+        write_whole(tmp_path / "r.json", TEXT)
+    assert os.listdir(tmp_path) == ["r.json"]
+
+
+def test_what_is_no_json_number_is_not_written():
+    table = parse(TEXT, "itself")
+    for bad in (float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="cannot be written as JSON"):
+            serialise(table.model_copy(update={"coefficients": [bad]}))
