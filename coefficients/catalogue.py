@@ -1,6 +1,7 @@
 """Where tables come from: fits, the folder of published constants, the folder of refits, files."""
 
 import json
+import os
 import platform
 from importlib.metadata import version
 from pathlib import Path
@@ -43,7 +44,8 @@ def load(name: str) -> Table:
             return corrected(table)
         if folder == "published":
             return table
-    if Path(name).suffix == ".json" or Path(name).is_file():
+    # os.path, unlike Path, takes a name that is too long for one that does not exist.
+    if name.endswith(".json") or os.path.isfile(name):
         return corrected(read(Path(name)))
     allowed = ", ".join((*QUANTITIES, *(f"published/{q}" for q in QUANTITIES)))
     raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")

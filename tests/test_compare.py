@@ -1,0 +1,105 @@
+import json
+
+import numpy as np
+import pytest
+
+from coefficients.catalogue import form_of, load
+from coefficients.compare import as_json, coefficient_rows, compare
+from fitting import form_values, off_grid_errors, off_grid_reference
+
+QUANTITIES = ("ps", "g", "q", "r")
+
+
+def against_published(quantity: str):
+    return compare([(name, load(name)) for name in (f"published/{quantity}", quantity)])
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_a_refit_is_no_worse_than_the_corrected_published_table(quantity):
+    published, refitted = against_published(quantity).entries
+    assert published.rms_ratio == published.largest_ratio == 1
+    assert refitted.rms_ratio < 1
+    assert refitted.rms_ratio == refitted.errors.rms / published.errors.rms
+    assert refitted.largest_ratio == refitted.errors.largest / published.errors.largest
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_every_table_is_measured_on_the_points_that_refits_are_measured_on(quantity):
+    found = against_published(quantity)
+    for entry in found.entries:
+        expected = off_grid_errors(form_of(entry.table))
+        assert entry.errors.rms == pytest.approx(expected.rms, rel=1e-12)
+        assert entry.errors.where == expected.where
+    # … so that a table's own statement of its errors is confirmed.
+    stated = found.entries[1].table.errors.off_grid
+    measured = found.entries[1].errors
+    assert (measured.largest, measured.where) == (pytest.approx(stated.max, rel=1e-9), stated.where)
+    assert measured.rms == pytest.approx(stated.rms, rel=1e-9)
+
+
+def test_where_tables_differ_most_is_found():
+    found = against_published("g")
+    one, other = (form_of(entry.table) for entry in found.entries)
+    points, _ = off_grid_reference(type(one))
+    apart = np.abs(form_values(one, points) - form_values(other, points))
+    assert found.difference == apart.max()
+    assert list(found.where.values()) == points[apart.argmax()].tolist()
+    place = np.array([list(found.where.values())])
+    at = abs(form_values(one, place) - form_values(other, place))[0]
+    assert at == pytest.approx(found.difference, rel=1e-12)
+
+
+def test_the_last_of_three_is_held_against_the_first():
+    names = ("published/ps", "published/ps@printed", "ps")
+    found = compare([(name, load(name)) for name in names])
+    assert tuple(entry.label for entry in found.entries) == names
+    assert found.entries[1].rms_ratio > 4
+    assert found.difference == against_published("ps").difference
+
+
+def test_a_table_does_not_differ_from_itself():
+    found = compare([("one", load("q")), ("other", load("q"))])
+    assert (found.difference, found.entries[1].rms_ratio) == (0, 1)
+
+
+def test_a_single_table_is_measured():
+    found = compare([("q", load("q"))])
+    assert found.entries[0].errors.rms == pytest.approx(load("q").errors.off_grid.rms, rel=1e-9)
+
+
+def test_tables_of_different_quantities_are_refused():
+    with pytest.raises(ValueError, match="different quantities: g, q"):
+        compare([("one", load("q")), ("other", load("g"))])
+
+
+def test_a_comparison_of_nothing_is_refused():
+    with pytest.raises(ValueError):
+        compare([])
+
+
+@pytest.mark.parametrize("quantity", ["ps", "q"])
+def test_a_comparison_is_plain_json(quantity):
+    found = against_published(quantity)
+    data = as_json(found)
+    assert json.loads(json.dumps(data, allow_nan=False)) == data
+    assert data["quantity"] == quantity
+    assert data["points"] == found.entries[0].errors.points
+    refitted = data["tables"][1]
+    assert refitted["coefficients"] == load(quantity).coefficients
+    assert (refitted["rms"], refitted["max"]) == (
+        found.entries[1].errors.rms,
+        found.entries[1].errors.largest,
+    )
+    assert data["largest_difference"] == {"value": found.difference, "where": found.where}
+
+
+@pytest.mark.parametrize(("quantity", "count"), [("ps", 162), ("g", 4), ("q", 2), ("r", 17)])
+def test_coefficients_stand_side_by_side_under_their_names(quantity, count):
+    found = against_published(quantity)
+    rows = coefficient_rows(found)
+    assert len(rows) == count
+    names, values = zip(*rows, strict=True)
+    assert list(names) == np.ravel(found.entries[0].table.coefficient_names).tolist()
+    for column, entry in enumerate(found.entries):
+        expected = np.ravel(entry.table.coefficients).tolist()
+        assert [row[column] for row in values] == expected
