@@ -12,7 +12,7 @@ from integrals.exponential import e3
 from integrals.g import DENSITY
 from integrals.integral import Estimate, Integral, leg
 from integrals.monte_carlo import Sequence, mean_estimate, unit_points
-from integrals.quadrature import exponential_decay
+from integrals.quadrature import checked_steps, exponential_decay
 from shading import penetration
 from shading.types import Scalar
 
@@ -32,7 +32,7 @@ def closed_form(density) -> Estimate:
 
 @leg(*AXES)
 def quadrature(density, *, step: float = 1 / 32) -> Estimate:
-    """Integrate P_p over the hemisphere; the error is against twice the step.
+    """Integrate P_p over the hemisphere by the trapezoid rule of `step`.
 
     The azimuth integrates to 2π; with u·n = e^(−s) the layer at u·n ~ d has unit width in s.
     """
@@ -44,8 +44,7 @@ def quadrature(density, *, step: float = 1 / 32) -> Estimate:
             weights * cosines**2 * jax.vmap(penetration, (0, None))(cosines, density)
         )
 
-    fine, coarse = rule(step), rule(2 * step)
-    return Estimate(fine, jnp.abs(fine - coarse) + 1e-14)
+    return checked_steps(rule, step, 1e-14)
 
 
 @leg(*AXES)

@@ -9,6 +9,9 @@ from jax import Array
 
 from integrals.integral import Estimate
 
+# Sums of terms that may have underflowed are no better than this.
+_UNDERFLOW = 1e-300
+
 
 @functools.cache
 def gauss_legendre(nodes: int, lower: float, upper: float) -> tuple[np.ndarray, np.ndarray]:
@@ -38,3 +41,16 @@ def checked_rule(rule: Callable[[int], Array], nodes: int, rounding: float | Arr
     """
     fine, coarse = rule(nodes), rule(3 * nodes // 4)
     return Estimate(fine, 3 * jnp.abs(fine - coarse) + rounding)
+
+
+def checked_steps(rule: Callable[[float], Array], step: float, rounding: float) -> Estimate:
+    """Give the value of a trapezoid rule of `step`, its error judged against two and four times it.
+
+    Halving the step squares the error of a smooth integrand. Where the difference to the doubled
+    step happens to vanish, the square of the difference before it stands in. `rounding` is
+    relative to the value, which is positive.
+    """
+    fine, coarse, coarser = rule(step), rule(2 * step), rule(4 * step)
+    scale = jnp.maximum(fine, _UNDERFLOW)
+    relative = jnp.abs(fine - coarse) / scale + ((coarse - coarser) / scale) ** 2 + rounding
+    return Estimate(fine, relative * fine + _UNDERFLOW)
