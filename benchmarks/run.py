@@ -1,0 +1,177 @@
+"""Speed, as ratios measured in one run: `python benchmarks/run.py [--json]`.
+
+(a) `shadefit refit all` at 65×65 from a cold start, imports and compilation included, against the
+same job in plain NumPy and SciPy (plain_scipy.py). (b) Evaluations a second of P_s by its closed
+form against quadrature of the definition.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from plain_scipy import directions, lights_of, views
+from plain_scipy import scattered_fraction as by_numpy
+
+from fitting.cells import fit_cells
+from fitting.errors import exact_values
+from fitting.grid import trapezoid_grid
+from fitting.paper import RationalPs, RationalR
+from integrals import PS, R
+from integrals.ps import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
+
+HERE = Path(__file__).parent
+CELLS = 5
+THREADS = {"OPENBLAS_NUM_THREADS": "1"}
+
+
+def timed(command: list[str]) -> tuple[float, float, float, str]:
+    """Run a command; give wall and processor seconds, peak memory in MiB and its output."""
+    with tempfile.TemporaryFile("w+") as output:
+        clock = time.perf_counter()
+        child = subprocess.Popen(command, stdout=output, env={**os.environ, **THREADS})
+        _, status, usage = os.wait4(child.pid, 0)
+        wall = time.perf_counter() - clock
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode:
+            raise SystemExit(f"{command[0]} {command[1]} ended with {child.returncode}")
+        output.seek(0)
+        text = output.read()
+    return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text
+
+
+def refit_all(folder: Path) -> dict:
+    code = "from shadefit.cli import main; main()"
+    command = [sys.executable, "-c", code, "refit", "all", "--out", str(folder), "--json"]
+    wall, processor, memory, text = timed(command)
+    tables = json.loads(text)["tables"]
+    rms = {table["quantity"]: table["errors"]["off_grid"]["rms"] for table in tables}
+    return {"seconds": wall, "processor_seconds": processor, "mebibytes": memory, "rms": rms}
+
+
+def surfaces(path: Path) -> None:
+    """Write the surfaces that the fits of the plain side start from: not part of what is timed."""
+    grid = trapezoid_grid(RationalPs.axes[:2], 65)
+    cells = np.array(fit_cells(grid, "uniform").coefficients).reshape(-1, 6)
+    cells[:, 0] -= 0.5
+    chosen = np.random.default_rng(2).choice(65**2, CELLS, replace=False)
+    theta, phi, _ = lights_of(48)
+    exact = []
+    for cell in chosen:
+        material = np.broadcast_to(grid.points[cell], (len(theta), 2))
+        exact.append(exact_values(PS, np.column_stack([material, theta, phi])))
+    other = trapezoid_grid(RationalR.axes, 65)
+    np.savez(
+        path,
+        ps_points=grid.points,
+        cells=cells.T,
+        ps_exact=np.array(exact),
+        r_points=other.points,
+        r=exact_values(R, other.points),
+    )
+
+
+def plain(path: Path) -> dict:
+    command = [sys.executable, str(HERE / "plain_scipy.py"), str(path), "--cells", str(CELLS)]
+    wall, _, memory, text = timed(command)
+    found = json.loads(text)
+    # What was not measured is the work on the cells that were left out.
+    rest = sum(found["seconds"].values()) - found["measured"]
+    return {
+        "seconds": wall + rest,
+        "measured_seconds": wall,
+        "mebibytes": memory,
+        "parts": found["seconds"],
+        "notes": found["notes"],
+    }
+
+
+def rate(function, *arguments, count: int, repeat: int = 5) -> float:
+    """Give evaluations a second: the best of several runs, compiled before."""
+    jax.block_until_ready(function(*arguments))
+    best = np.inf
+    for _ in range(repeat):
+        clock = time.perf_counter()
+        jax.block_until_ready(function(*arguments))
+        best = min(best, time.perf_counter() - clock)
+    return count / best
+
+
+def throughput() -> dict:
+    random, count = np.random.default_rng(1), 1 << 20
+    alpha = random.uniform(0.15, 1, count)
+    theta_f, theta_u = random.uniform(0, np.pi / 2, (2, count))
+    phi = random.uniform(0, np.pi, count)
+    un, nt = np.cos(theta_u), np.cos(theta_f)
+    ut = np.sin(theta_u) * np.cos(phi) * np.sin(theta_f) + un * nt
+    rates = {}
+    for name, dtype, steps in (
+        ("float32", jnp.float32, FLOAT32_STEPS),
+        ("float64", jnp.float64, FLOAT64_STEPS),
+    ):
+        closed = jax.jit(lambda c, a, b, alpha, s=steps: scattered_fraction(c, a, b, alpha, s))
+        values = [jnp.asarray(each, dtype) for each in (un, ut, nt, alpha)]
+        assert closed(*values).dtype == dtype
+        rates[f"closed form, JAX {name}"] = rate(closed, *values, count=count)
+    few = 64
+    points = jnp.asarray(np.column_stack([alpha, theta_f, theta_u, phi])[:few])
+    integral = jax.jit(lambda x: jax.lax.map(lambda p: PS.quadrature(*p).value, x, batch_size=4))
+    rates["quadrature of the definition, JAX 256²"] = rate(integral, points, count=few, repeat=3)
+    view, weights = views()
+    lights = directions(theta_u[:1024], phi[:1024])
+    rates["quadrature of the definition, NumPy 64×128"] = rate(
+        lambda: by_numpy(0.35, 0.7, lights, view, weights), count=1024, repeat=3
+    )
+    return rates
+
+
+def show(found: dict) -> None:
+    ours, theirs = found["refit"], found["plain"]
+    print(f"load average at the start {found['load']:.2f} on {os.cpu_count()} processors\n")
+    print(f"{'(a) all four tables, 65×65, cold start':<50} {'seconds':>10} {'MiB':>6}")
+    for name, side in (("shadefit refit all", ours), ("plain NumPy/SciPy, extrapolated", theirs)):
+        print(f"    {name:<46} {side['seconds']:>10.1f} {side['mebibytes']:>6.0f}")
+    print(f"    {'ratio':<46} {found['ratio']:>10.1f}")
+    print("    of the plain side:")
+    for name, seconds in theirs["parts"].items():
+        print(f"        {name:<42} {seconds:>10.1f}")
+    for name, value in theirs["notes"].items():
+        print(f"        {name}: {', '.join(f'{each:.3g}' for each in np.ravel(value))}")
+    print(f"\n{'(b) P_s':<46} {'evaluations/s':>14} {'to the last':>12}")
+    last = list(found["throughput"].values())[-1]
+    for name, each in found["throughput"].items():
+        print(f"    {name:<42} {each:>14.4g} {each / last:>12.4g}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead")
+    options = parser.parse_args()
+    jax.config.update("jax_enable_x64", True)
+    load = os.getloadavg()[0]
+    with tempfile.TemporaryDirectory() as folder:
+        ours = refit_all(Path(folder))
+        surfaces(Path(folder) / "surfaces.npz")
+        theirs = plain(Path(folder) / "surfaces.npz")
+    found = {
+        "load": load,
+        "refit": ours,
+        "plain": theirs,
+        "ratio": theirs["seconds"] / ours["seconds"],
+        "throughput": throughput(),
+    }
+    if options.json:
+        print(json.dumps(found, indent=2))
+    else:
+        show(found)
+
+
+if __name__ == "__main__":
+    main()
