@@ -140,7 +140,7 @@ def built(recipe) -> Program:
     return Program("Random", ("x", "y"), tuple(steps), (values[-1],))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(
     recipe=RECIPES,
     corner=st.tuples(*[st.floats(-4, 4)] * INPUTS),

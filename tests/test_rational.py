@@ -127,6 +127,7 @@ def row_norms(rows) -> np.ndarray:
     return np.sqrt(MATERIALS.weights @ (material - cells().coefficients.reshape(-1, 6)) ** 2)
 
 
+@pytest.mark.slow
 def test_the_rows_of_ps_end_in_the_same_minimum_from_the_worst_of_several_starts(monkeypatch):
     monkeypatch.setattr(rational, "_fit_jointly", lambda grid, cells, rows: rows)
     plain = row_norms(fit_rational_ps(MATERIALS, cells()))
