@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup refit test test-slow check figures format lock clean
+.PHONY: help setup refit test test-slow check figures bench format lock clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -39,6 +39,9 @@ figures: setup  ## draw the figures of README.md into docs/figures
 verify: toolchains  ## compile, run and compare the exported code of every table, in every language
 	$(BIN)/shadefit verify ps g q r published/ps published/g published/q published/r exact/ps \
 	    --precision all
+
+bench: setup  ## reproduce the claims of speed, as ratios measured in one run
+	$(BIN)/python benchmarks/run.py
 
 format: setup  ## format and mend what can be mended
 	$(BIN)/ruff format .
