@@ -5,7 +5,7 @@ import numpy as np
 
 
 def batched(function, width: int):
-    """Give `function` of scalars as one of arrays (n,), compiled for batches of `width` points.
+    """Give `function` of a point as one of arrays (n, ...), compiled for batches of `width` points.
 
     The last batch is filled up with its last point. Results are NumPy arrays (n, ...), in the
     tuples that `function` returns.
@@ -15,7 +15,8 @@ def batched(function, width: int):
     def evaluate(*columns):
         columns = [np.asarray(column, float) for column in columns]
         count = len(columns[0])
-        filled = [np.pad(column, (0, -count % width), "edge") for column in columns]
+        last = np.minimum(np.arange(count + -count % width), count - 1)
+        filled = [column[last] for column in columns]
         results = [
             compiled(*(column[start : start + width] for column in filled))
             for start in range(0, len(filled[0]), width)

@@ -16,7 +16,7 @@ from integrals.ps import (
     sggx_quadrature,
     sggx_scattered_fraction,
 )
-from shading import direction, fiber_direction, fiber_matrix
+from shading import direction
 from tests.batches import batched
 from tests.problems import RIGHT, awkward_points, distance, exact_ps, exact_sggx
 
@@ -31,6 +31,14 @@ FLOAT32_ALLOWED, FLOAT32_ATTAINED = 3e-6, 5e-7
 @functools.cache
 def closed_form():
     return batched(PS.closed_form, 256)
+
+
+@functools.cache
+def general():
+    def value(matrix, theta_u, phi):
+        return sggx_scattered_fraction(matrix, direction(theta_u, phi))
+
+    return batched(value, 256)
 
 
 @functools.cache
@@ -58,11 +66,10 @@ def test_the_closed_form_is_within_its_stated_error(least_alpha):
 
 def test_the_cosines_alone_cannot_do_so():
     """What sines from half angles are for: near the fibre 1 − (u·t)² is all rounding."""
-    alpha, theta_f, theta_u, phi = awkward_points(1, 300, 1e-9)
-    light, fiber = jax.vmap(direction)(theta_u, phi), jax.vmap(fiber_direction)(theta_f)
+    points = awkward_points(1, 300, 1e-9)
     rounded = functools.partial(scattered_fraction, least_alpha=1e-50)
-    value = jax.vmap(rounded)(light[:, 2], jnp.sum(light * fiber, 1), fiber[:, 2], alpha)
-    assert np.any(distance(value, exact(1, 300, 1e-9)) > 1000 * EPS / alpha)
+    value = jax.jit(jax.vmap(rounded))(*cosines(points))
+    assert np.any(distance(value, exact(1, 300, 1e-9)) > 1000 * EPS / points[0])
 
 
 @pytest.mark.parametrize(("seed", "least_alpha"), [(2, 0.15), (3, 0.02), (4, 1e-3), (5, 1e-9)])
@@ -147,18 +154,15 @@ def random_lights(seed, count):
 
 def test_any_matrix_is_exact_to_its_condition():
     matrices, (theta_u, phi) = random_matrices(8, 300, 0.02), random_lights(8, 300)
-    lights = jax.vmap(direction)(theta_u, phi)
-    value = jax.jit(jax.vmap(sggx_scattered_fraction))(matrices, lights)
+    value = general()(matrices, theta_u, phi)
     truth = [exact_sggx(*point) for point in zip(matrices, theta_u, phi, strict=True)]
     assert np.all(distance(value, truth) <= 4 * EPS * np.linalg.cond(matrices))
 
 
 def test_any_matrix_agrees_with_the_quadrature_of_its_definition():
     matrices, (theta_u, phi) = random_matrices(9, 48, 0.1), random_lights(9, 48)
-    value = jax.vmap(sggx_scattered_fraction)(matrices, jax.vmap(direction)(theta_u, phi))
-    estimate = jax.jit(
-        lambda *points: jax.lax.map(lambda x: sggx_quadrature(*x), points, batch_size=8)
-    )(matrices, theta_u, phi)
+    value = general()(matrices, theta_u, phi)
+    estimate = batched(sggx_quadrature, 8)(matrices, theta_u, phi)
     rounding = 4 * EPS * np.linalg.cond(matrices)
     gap = abs(value - estimate.value)
     assert np.all(gap <= estimate.error + rounding)
@@ -168,8 +172,9 @@ def test_any_matrix_agrees_with_the_quadrature_of_its_definition():
 
 def test_the_fibre_is_a_case_of_any_matrix():
     alpha, theta_f, theta_u, phi = points = awkward_points(10, 300, 0.02)
-    matrices = jax.vmap(fiber_matrix)(jax.vmap(fiber_direction)(theta_f), alpha)
-    value = jax.vmap(sggx_scattered_fraction)(matrices, jax.vmap(direction)(theta_u, phi))
+    fiber = np.stack([np.sin(theta_f), np.zeros_like(theta_f), np.cos(theta_f)], axis=1)
+    matrices = np.eye(3) - (1 - alpha**2)[:, None, None] * fiber[:, :, None] * fiber[:, None]
+    value = general()(matrices, theta_u, phi)
     assert np.all(abs(value - closed_form()(*points).value) <= 4 * EPS / alpha**2)
 
 
@@ -192,8 +197,7 @@ def test_symmetries():
         **tolerance,
     )
     # t and −t are one fibre
-    u, t = jax.vmap(direction)(theta_u, phi), jax.vmap(fiber_direction)(theta_f)
-    c, a, b = u[:, 2], jnp.sum(u * t, 1), t[:, 2]
+    c, a, b, _ = cosines(points)
     np.testing.assert_allclose(
         fraction(FLOAT64_STEPS)(c, -a, -b, alpha),
         fraction(FLOAT64_STEPS)(c, a, b, alpha),
