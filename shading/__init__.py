@@ -10,6 +10,11 @@ from shading.directions import sin2_between as sin2_between
 from shading.layer import optical_path as optical_path
 from shading.layer import penetration as penetration
 from shading.layer import scattering_kernel as scattering_kernel
+from shading.phase import fiber_phase_function as fiber_phase_function
+from shading.phase import half_vector as half_vector
+from shading.phase import schlick_phase_function as schlick_phase_function
+from shading.phase import velvet_lobe as velvet_lobe
+from shading.phase import velvet_phase_function as velvet_phase_function
 from shading.sggx import fiber_matrix as fiber_matrix
 from shading.sggx import fiber_normal_distribution as fiber_normal_distribution
 from shading.sggx import fiber_projected_area as fiber_projected_area

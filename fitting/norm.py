@@ -1,0 +1,133 @@
+"""The form of r(k), fitted from below: less than the exact factor everywhere, and proven to be.
+
+r = s/B(x) with x = −k, s = √(1 − x²) and B smooth, B(0) = 1, so that the form is s over a bound of
+B from above. Both r's loss and the bound are linear in the coefficients: the fit is a linear
+program.
+"""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from scipy.optimize import linprog
+
+from fitting.certificate import Certificate, bound_below
+from fitting.form import Form
+from fitting.grid import Grid
+from integrals import NORM
+from integrals.norm import normalisation, series_coefficients
+from programs.function import Function, Parameter
+from programs.trace import trace
+from shading.types import Scalar
+
+# What (B̃ − B)/x is kept above between the nodes: far more than any rounding, far less than r̃ loses.
+MARGIN = 1e-6
+# Where between the nodes the fit is lifted by; the certificate then has the last word.
+_LIFT_NODES = 4097
+# The closed form of B cancels towards x = 0: below sin φ = ¼ its power series is bounded instead.
+_SERIES_LIMIT = float(np.arcsin(0.25))
+_SERIES_TERMS = 24
+
+_norms = jax.jit(jax.vmap(normalisation))
+
+
+class ConservativeNorm(Form):
+    """r̃ = s / (1 + x (c₀ + c₁x + c₂(1 − s))), x = −k, s = √(1 − k²); `coefficients` (3,)."""
+
+    name = "conservative-norm"
+    equation = "r = s / (1 + x (c0 + c1 x + c2 (1 - s))), x = -k, s = sqrt(1 - k²)"
+    integral = NORM
+    axes = (replace(NORM.axes[0], lower=-0.95, open_below=False),)
+
+    def __call__(self, asymmetry: Scalar) -> Array:
+        """Evaluate r̃ at one asymmetry."""
+        # notation: x, s, c₀ … c₂ as above
+        c, x = self.coefficients, -jnp.asarray(asymmetry)
+        s = jnp.sqrt((1 - x) * (1 + x))
+        return s / (1 + x * (c[0] + c[1] * x + c[2] * (1 - s)))
+
+    @classmethod
+    def coefficient_names(cls) -> list:
+        """Name the coefficients by the term that each multiplies."""
+        return ["c0: x", "c1: x²", "c2: x(1 − s)"]
+
+
+def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
+    """Fit r̃ ≤ r on a grid of k, the largest relative loss (r − r̃)/r̃ least. Returns (3,).
+
+    A linear program on the nodes; then c₀ is raised until r̃ is below r between them as well.
+    """
+    k = grid.points[:, 0]
+    keep = k < 0
+    x, r = -k[keep], np.asarray(exact)[keep]
+    smooth = np.sqrt((1 - x) * (1 + x)) / r  # B
+    terms = _terms(x)
+    upper = np.concatenate([x[:, None] * terms / smooth[:, None], -np.ones((len(x), 1))], axis=1)
+    lower = np.concatenate([-terms, np.zeros((len(x), 1))], axis=1)
+    solved = linprog(
+        np.array([0.0, 0.0, 0.0, 1.0]),
+        np.concatenate([upper, lower]),
+        np.concatenate([1 - 1 / smooth, -(smooth - 1) / x]),
+        bounds=[(None, None)] * 3 + [(0, None)],
+    )
+    if not solved.success:
+        raise ValueError(f"r(k) on {len(k)} nodes: the linear program says {solved.message!r}")
+    coefficients = solved.x[:3]
+    dense = -ConservativeNorm.axes[0].lower * np.linspace(1, _LIFT_NODES, _LIFT_NODES) / _LIFT_NODES
+    exact_b = np.sqrt((1 - dense) * (1 + dense)) / np.asarray(_norms(-dense))
+    room = np.min(_terms(dense) @ coefficients - (exact_b - 1) / dense)
+    return jnp.asarray(coefficients + np.array([MARGIN - room, 0, 0]))
+
+
+def certify_conservative(form: ConservativeNorm) -> Certificate:
+    """Bound (B̃ − B)/x from below for all k of the form's domain: positive means r̃ ≤ r.
+
+    r̃ = s/B̃ and r = s/B; at k = 0 both are one. In φ = arcsin x, s = cos φ, so that B is made of
+    sines, cosines and a division; towards φ = 0, of its power series with all that is left out.
+    """
+    end = float(np.arcsin(-form.axes[0].lower))
+    pieces = [(_near_zero, 0.0, min(_SERIES_LIMIT, end)), (_beyond, min(_SERIES_LIMIT, end), end)]
+    certificates = []
+    for rest, low, high in pieces:
+
+        def room(phi, rest=rest):
+            return _room(form, rest, phi)
+
+        parameters = (Parameter("phi", (low, high), "rad"),)
+        program = trace(Function("room", "B̃ − B over x.", parameters, None, "value", room))
+        certificates.append(bound_below(program, np.array([low]), np.array([high])))
+    return Certificate(
+        min(each.bound for each in certificates), sum(each.boxes for each in certificates)
+    )
+
+
+def _terms(x: np.ndarray) -> np.ndarray:
+    return np.stack([np.ones_like(x), x, 1 - np.sqrt((1 - x) * (1 + x))], axis=1)
+
+
+def _room(form: ConservativeNorm, rest, phi):
+    """Give (B̃ − B)/x at x = sin φ, `rest` giving (B − 1)/x."""
+    c, x, s = np.asarray(form.coefficients), jnp.sin(phi), jnp.cos(phi)
+    return c[0] + c[1] * x + c[2] * (1 - s) - rest(phi, x, s)
+
+
+def _near_zero(_, x, s):
+    """Bound (B − 1)/x from above by its power series: B = s³ Σ aₙxⁿ and a₀ = 1.
+
+    aₙ₊₁/aₙ < (n + 2)/(n + 1), so that what is left out is below a geometric series.
+    """
+    a, limit = series_coefficients(_SERIES_TERMS + 1), np.sin(_SERIES_LIMIT)
+    last = len(a) - 1
+    total = a[last] / (1 - limit * (last + 2) / (last + 1))
+    for coefficient in a[last - 1 : 0 : -1]:
+        total = coefficient + x * total
+    return s * s * s * total - x * (1 + s + s * s) / (1 + s)
+
+
+def _beyond(phi, x, s):
+    """Give (B − 1)/x from B = (2/(πx²)) ((π + 2φ)(2x² − 1) + 2xs + πs³)."""
+    a = np.pi + 2 * phi
+    b = (2 / np.pi) * (a * (2 * x * x - 1) + 2 * x * s + np.pi * s * s * s) / (x * x)
+    return (b - 1) / x

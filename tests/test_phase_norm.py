@@ -1,0 +1,176 @@
+"""r(k): three legs, the proof's consequences, and a fit that never creates energy."""
+
+import functools
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import mpmath as mp
+import numpy as np
+import pytest
+
+from fitting.certificate import certify_denominators
+from fitting.grid import trapezoid_grid
+from fitting.norm import MARGIN, ConservativeNorm, certify_conservative, fit_conservative_norm
+from integrals import NORM
+from integrals.norm import scattered_energy, series_coefficients
+from tests.batches import batched
+from tests.differences import difference
+
+EPS = np.finfo(float).eps
+DOMAIN_END = 0.95
+
+VALUE = jax.jit(jax.vmap(NORM.value))
+SLOPE = jax.jit(jax.vmap(jax.grad(NORM.value)))
+
+
+def exact_norm(k) -> mp.mpf:
+    """Give 1/r by quadrature of its one-dimensional integral, in 30 digits."""
+    with mp.workdps(30):
+        x = -mp.mpf(float(k))
+        ridge = mp.sqrt(1 - x) if x > 0.5 else mp.mpf(1) / 2
+
+        def integrand(y):
+            return (mp.cos(y) / (1 - x * mp.cos(y))) ** 2
+
+        points = [0, ridge, min(6 * ridge, mp.mpf(1)), mp.pi / 2]
+        return mp.pi / (4 * (1 - x * x) * mp.quad(integrand, sorted(set(points))))
+
+
+def asymmetries(seed, count) -> np.ndarray:
+    """Give k bunched at both ends of (−1, 0] and at the seam of the closed form."""
+    rng = np.random.default_rng(seed)
+    kinds = [-(10.0 ** rng.uniform(-12, 0, count)), -1 + 10 ** rng.uniform(-9, 0, count)]
+    kinds += [-rng.uniform(0.24, 0.26, count), np.array([0.0, -0.25, -0.95])]
+    return np.concatenate(kinds)
+
+
+@functools.cache
+def energies():
+    return jax.jit(jax.vmap(jax.vmap(scattered_energy, (None, 0)), (0, None)))
+
+
+def test_the_closed_form_is_exact():
+    k = asymmetries(0, 12)
+    value, error = batched(NORM.closed_form, 8)(k)
+    exact = np.array([float(exact_norm(each)) for each in k])
+    assert np.all(abs(value - exact) <= error)
+    assert np.all(error <= 64 * EPS * value)
+
+
+def test_the_quadrature_is_within_its_stated_error():
+    k = asymmetries(1, 40)
+    value, error = batched(NORM.quadrature, 8)(k)
+    exact, rounding = batched(NORM.closed_form, 8)(k)
+    assert np.all(abs(value - exact) <= error + rounding)
+    assert np.all(error[k >= -DOMAIN_END] < 1e-13)
+
+
+@pytest.mark.parametrize("sequence", ["random", "sobol"])
+def test_monte_carlo_is_within_five_standard_errors(sequence):
+    k = np.array([0.0, -0.1, -0.6, -0.95])
+    value, error = jax.jit(jax.vmap(functools.partial(NORM.monte_carlo, sequence=sequence)))(k)
+    exact = VALUE(k)
+    assert np.all(abs(value - exact) <= 5 * error + 4 * EPS)
+    assert np.all(error < 1e-2)
+
+
+def test_known_values():
+    """Isotropic scattering; and −1 < k → −1, where the lobe is a ring that only s/4 tames."""
+    assert NORM.value(0.0) == 1
+    for gap in (1e-8, 1e-12):
+        s = np.sqrt(gap * (2 - gap))
+        np.testing.assert_allclose(NORM.value(-1 + gap), s / 4, rtol=16 * np.sqrt(gap))
+    np.testing.assert_allclose(jax.grad(NORM.value)(0.0), 16 / (3 * np.pi), rtol=1e-14)
+    assert np.isnan(NORM.value(-1.0))
+    assert np.isnan(NORM.value(0.1))
+
+
+def test_no_direction_of_light_gains_energy():
+    """The theorem that r stands on: the energy falls from u·t = 0 to u·t = 1."""
+    k = np.array([-1e-3, -0.1, -0.5, -0.8, -0.95, -0.99])
+    cosines = np.concatenate([[0.0, 1e-9], np.linspace(1e-3, 1, 60)])
+    kept = np.asarray(energies()(k, cosines) * VALUE(k)[:, None])
+    np.testing.assert_allclose(kept[:, 0], 1, rtol=0, atol=1e-12)
+    assert np.all(np.diff(kept, axis=1) <= 1e-13)
+    assert np.all(kept <= 1 + 1e-12)
+
+
+def test_most_energy_is_lost_along_the_fibre():
+    """∫ p dω_v at u = t is 2 (1 − x²) (ln(1 − x) + 1/(1 − x) − 1)/x²."""
+    for x in (0.1, 0.5, 0.95):
+        exact = 2 * (1 - x * x) * (np.log1p(-x) + 1 / (1 - x) - 1) / x**2
+        np.testing.assert_allclose(scattered_energy(-x, 1.0), exact, rtol=1e-12)
+    assert scattered_energy(-0.95, 1.0) * NORM.value(-0.95) < 0.3
+
+
+def test_with_the_printed_sign_the_talks_promise_is_broken():
+    """With p_Schlick(k, +sin) and k < 0, r fitted at u·t = 0 would create energy elsewhere."""
+
+    def printed(asymmetry, upright):
+        y, weights = np.polynomial.legendre.leggauss(200)
+        eta, weights = (y + 1) * np.pi / 4, weights * np.pi / 4
+        sine = np.sin(eta)
+        lobe = (1 - asymmetry**2) / (4 * np.pi * (1 - asymmetry * sine) ** 2)
+        mean = 2 * np.pi * np.cos(eta) if upright else 4 * sine
+        return 4 * np.sum(weights * sine * lobe * mean)
+
+    assert printed(-0.5, True) > 1.1 * printed(-0.5, False)
+    # The same with the sign of k turned is what is meant.
+    np.testing.assert_allclose(printed(0.5, False), 1 / NORM.value(-0.5), rtol=1e-12)
+    np.testing.assert_allclose(printed(0.5, True), scattered_energy(-0.5, 1.0), rtol=1e-12)
+
+
+def test_derivatives_are_finite_and_those_of_finite_differences():
+    k = np.concatenate([asymmetries(2, 5), [-1 + 1e-15]])
+    slopes = SLOPE(k)
+    assert np.isfinite(slopes).all()
+    inside = k[k > -0.9]
+    expected = difference(lambda x: VALUE(x[0]), inside[None], 0, 1e-3, -1, 0.0)
+    np.testing.assert_allclose(SLOPE(inside), expected, atol=1e-7)
+    by_quadrature = batched(jax.grad(lambda k: NORM.quadrature(k).value), 8)(inside)
+    np.testing.assert_allclose(by_quadrature, SLOPE(inside), atol=1e-11)
+
+
+def test_the_series_has_positive_coefficients_that_grow_slowly():
+    """What the certificate's remainder rests on."""
+    a = series_coefficients(200)
+    n = np.arange(199)
+    assert a[0] == 1
+    assert np.all(a > 0)
+    assert np.all(a[1:] / a[:-1] < (n + 2) / (n + 1))
+
+
+@functools.cache
+def fitted(count) -> ConservativeNorm:
+    grid = trapezoid_grid(ConservativeNorm.axes, count)
+    exact = VALUE(jnp.asarray(grid.points[:, 0]))
+    return ConservativeNorm(fit_conservative_norm(grid, exact))
+
+
+@pytest.mark.parametrize("count", [9, 65])
+def test_the_fit_loses_little_energy_and_creates_none(count):
+    form = fitted(count)
+    assert certify_conservative(form).holds
+    assert certify_denominators(form).bound > 0.99
+    k = -DOMAIN_END * np.random.default_rng(3).random(100_000)
+    exact = np.asarray(VALUE(k))
+    loss = 1 - np.asarray(jax.jit(jax.vmap(form))(k)) / exact
+    assert np.all(loss >= -4 * EPS)
+    assert loss.max() < 1.2e-3
+    assert form(0.0) == 1
+
+
+def test_a_fit_that_creates_energy_is_not_certified():
+    form = fitted(65)
+    bound = certify_conservative(form).bound
+    assert 0 < bound <= MARGIN
+    for coefficient, below in ((0, 2 * MARGIN), (1, 1e-4), (2, 1e-3)):
+        lower = form.coefficients.at[coefficient].add(-below)
+        wrong = eqx.tree_at(lambda form: form.coefficients, form, lower)
+        assert not certify_conservative(wrong).holds
+
+
+def test_the_form_is_differentiable_on_its_closed_domain():
+    k = np.array([0.0, -1e-9, -0.4, -DOMAIN_END])
+    assert np.isfinite(jax.vmap(jax.grad(fitted(65)))(k)).all()
