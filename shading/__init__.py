@@ -4,9 +4,23 @@ Every function takes scalars and vectors of shape (3,), is differentiable, and l
 the caller's `jax.vmap`. Directions are unit vectors in a frame whose z axis is the surface normal.
 """
 
+from shading.ambient import ambient_attenuation as ambient_attenuation
+from shading.ambient import ambient_layer as ambient_layer
+from shading.ambient import ambient_radiance as ambient_radiance
+from shading.deferred import deferred_radiance as deferred_radiance
+from shading.deferred import wrapped_cosine as wrapped_cosine
 from shading.directions import direction as direction
 from shading.directions import fiber_direction as fiber_direction
 from shading.directions import sin2_between as sin2_between
+from shading.fuzz import asymmetry_from_spread as asymmetry_from_spread
+from shading.fuzz import base_attenuation as base_attenuation
+from shading.fuzz import escape as escape
+from shading.fuzz import layer_brdf as layer_brdf
+from shading.fuzz import roughness_from_spread as roughness_from_spread
+from shading.harmonics import harmonics as harmonics
+from shading.harmonics import irradiance as irradiance
+from shading.harmonics import mean_radiance as mean_radiance
+from shading.harmonics import radiance as radiance
 from shading.layer import optical_path as optical_path
 from shading.layer import penetration as penetration
 from shading.layer import scattering_kernel as scattering_kernel
@@ -15,6 +29,8 @@ from shading.phase import half_vector as half_vector
 from shading.phase import schlick_phase_function as schlick_phase_function
 from shading.phase import velvet_lobe as velvet_lobe
 from shading.phase import velvet_phase_function as velvet_phase_function
+from shading.sampling import phase_density as phase_density
+from shading.sampling import sample_phase_function as sample_phase_function
 from shading.sggx import fiber_matrix as fiber_matrix
 from shading.sggx import fiber_normal_distribution as fiber_normal_distribution
 from shading.sggx import fiber_projected_area as fiber_projected_area
