@@ -237,14 +237,17 @@ def _cost(
     cost.run(table, throughput, json)
 
 
-@app.command("figures", epilog="Example: shadefit figures --out /tmp/figures")
+@app.command("figures", epilog="Example: shadefit figures figure-5 frontier --out /tmp/figures")
 def _figures(
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Names of pictures; by default all.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
 ) -> None:
-    """Draw P_s exact, published and refitted, as PNG and SVG."""
+    """Draw the supplement's figures and ours, each as PNG and SVG."""
     from shadefit import figures
 
-    figures.run(out)
+    figures.run(names or [], out)
 
 
 @app.command("list", epilog="Example: shadefit list --json")

@@ -1,0 +1,82 @@
+"""One look for every picture: colours that the colour-blind can tell apart, and print can too."""
+
+import io
+from collections.abc import Callable
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
+from PIL import Image
+
+FORMATS = ("png", "svg")
+VALUES = "viridis"
+ERRORS = "PuOr"
+FIBRE = "#d55e00"
+# Of the raster parts: all of a PNG, images and dense surfaces of an SVG.
+_DPI = {"png": 120, "svg": 72}
+
+_STYLE: dict[Any, Any] = {
+    "axes.grid": False,
+    "axes.labelsize": 9,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": 9.5,
+    "figure.facecolor": "white",
+    "font.size": 9,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.6,
+    "mathtext.fontset": "dejavusans",
+    "svg.hashsalt": "shadefit",
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+}
+
+# By what a table is: colours of Okabe and Ito, a dash pattern and a marker, so that no two are told
+# apart by colour alone.
+COLOURS = {
+    "exact": "#000000",
+    "published": "#d55e00",
+    "printed": "#cc79a7",
+    "refitted": "#0072b2",
+    "best": "#009e73",
+}
+DASHES = {
+    "exact": "-",
+    "published": (0, (5, 2)),
+    "printed": (0, (5, 1.5, 1, 1.5)),
+    "refitted": (0, (1.5, 1.5)),
+    "best": (0, (8, 2, 2, 2)),
+}
+MARKERS = {"exact": "*", "published": "s", "printed": "X", "refitted": "o", "best": "D"}
+
+
+def render(draw: Callable[[], Figure]) -> dict[str, bytes]:
+    """Draw a figure in this style; returns its files by extension, the same bytes each time."""
+    with mpl.rc_context(_STYLE):
+        figure = draw()
+        return {extension: _encode(figure, extension) for extension in FORMATS}
+
+
+def _encode(figure: Figure, extension: str) -> bytes:
+    buffer = io.BytesIO()
+    metadata = {"Date": None} if extension == "svg" else {"Software": None}
+    figure.savefig(buffer, format=extension, dpi=_DPI[extension], metadata=metadata)
+    return buffer.getvalue() if extension == "svg" else _smaller(buffer)
+
+
+def _smaller(png: io.BytesIO) -> bytes:
+    """Leave out the alpha channel, which is full everywhere, and compress as well as it goes."""
+    buffer = io.BytesIO()
+    Image.open(png).convert("RGB").save(buffer, "png", optimize=True)
+    return buffer.getvalue()
+
+
+def space(figure: Figure, place: tuple[float, float, float, float]) -> Axes3D:
+    """Add axes in space at a place of the figure: left, bottom, width and height as fractions."""
+    axes = figure.add_axes(place, projection="3d", computed_zorder=False)
+    assert isinstance(axes, Axes3D)
+    # They reach beyond their place: none may cover its neighbour.
+    axes.patch.set_visible(False)
+    return axes
