@@ -31,24 +31,9 @@ class Cells:
 
 def fit_cells(grid: Grid, weight: Weight, count: int = DIRECTIONS_PER_ANGLE) -> Cells:
     """Solve every cell of a grid of (α, θf) by QR over count² weighted directions of light."""
-    alphas, thetas = (jnp.asarray(nodes) for nodes in grid.nodes)
     lights, weights = light_directions(RationalPs.axes[2], count, weight)
-    coefficients, factors, residuals = _solve(alphas, thetas, lights, weights)
+    coefficients, factors, residuals = _solve(grid.nodes[1], lights, weights, _exact(grid, lights))
     return Cells(jnp.swapaxes(coefficients, 0, 1), factors, residuals.T)
-
-
-@jax.jit
-def _solve(alphas, thetas, lights, weights):
-    def at_tilt(theta_f):
-        cos_un, cos_ut = _cosines(lights, theta_f)
-        root = jnp.sqrt(weights)
-        q, r = jnp.linalg.qr(jax.vmap(direction_basis)(cos_un, cos_ut) * root[:, None])
-        exact = _exact(alphas, theta_f, cos_un, cos_ut) * root
-        projection = exact @ q
-        solved = jax.scipy.linalg.solve_triangular(r, projection.T).T
-        return solved, r, jnp.sum((exact - projection @ q.T) ** 2, axis=1)
-
-    return jax.lax.map(at_tilt, thetas)
 
 
 def largest_error(grid: Grid, weight: Weight, coefficients: Array) -> tuple[float, np.ndarray]:
@@ -56,9 +41,10 @@ def largest_error(grid: Grid, weight: Weight, coefficients: Array) -> tuple[floa
 
     The place is (α, θf, θu, φ).
     """
-    alphas, thetas = (jnp.asarray(nodes) for nodes in grid.nodes)
+    alphas, thetas = grid.nodes
     lights, _ = light_directions(RationalPs.axes[2], DIRECTIONS_PER_ANGLE, weight)
-    largest, index = _largest(alphas, thetas, lights, jnp.swapaxes(coefficients, 0, 1))
+    exact = _exact(grid, lights)
+    largest, index = _largest(thetas, lights, exact, jnp.swapaxes(coefficients, 0, 1))
     tilt = int(np.argmax(largest))
     row, column = np.unravel_index(int(index[tilt]), (len(alphas), len(lights)))
     place = np.array([alphas[row], thetas[tilt], *lights[column]], dtype=float)
@@ -66,15 +52,31 @@ def largest_error(grid: Grid, weight: Weight, coefficients: Array) -> tuple[floa
 
 
 @jax.jit
-def _largest(alphas, thetas, lights, coefficients):
+def _solve(thetas, lights, weights, exact):
+    root = jnp.sqrt(weights)
+
     def at_tilt(inputs):
-        theta_f, rows = inputs
-        cos_un, cos_ut = _cosines(lights, theta_f)
-        fitted = rows @ jax.vmap(direction_basis)(cos_un, cos_ut).T
-        error = jnp.abs(fitted - _exact(alphas, theta_f, cos_un, cos_ut)).ravel()
+        theta_f, values = inputs
+        q, r = jnp.linalg.qr(_basis(lights, theta_f) * root[:, None])
+        projection = values * root @ q
+        solved = jax.scipy.linalg.solve_triangular(r, projection.T).T
+        return solved, r, jnp.sum((values * root - projection @ q.T) ** 2, axis=1)
+
+    return jax.lax.map(at_tilt, (thetas, exact))
+
+
+@jax.jit
+def _largest(thetas, lights, exact, coefficients):
+    def at_tilt(inputs):
+        theta_f, values, rows = inputs
+        error = jnp.abs(rows @ _basis(lights, theta_f).T - values).ravel()
         return jnp.max(error), jnp.argmax(error)
 
-    return jax.lax.map(at_tilt, (thetas, coefficients))
+    return jax.lax.map(at_tilt, (thetas, exact, coefficients))
+
+
+def _basis(lights, theta_f):
+    return jax.vmap(direction_basis)(*_cosines(lights, theta_f))
 
 
 def _cosines(lights, theta_f):
@@ -84,6 +86,18 @@ def _cosines(lights, theta_f):
     return cos_un, in_plane * jnp.sin(theta_f) + cos_un * jnp.cos(theta_f)
 
 
-def _exact(alphas, theta_f, cos_un, cos_ut):
+def _exact(grid: Grid, lights: np.ndarray) -> Array:
+    """Give the exact P_s (θf, α, lights) of a grid's materials."""
+    return _exact_values(*grid.nodes, lights)
+
+
+# One compilation for both of its callers; within a loop XLA keeps the root in vector registers.
+@jax.jit
+def _exact_values(alphas, thetas, lights):
     row = jax.vmap(scattered_fraction, (0, 0, None, None))
-    return jax.vmap(row, (None, None, None, 0))(cos_un, cos_ut, jnp.cos(theta_f), alphas)
+
+    def at_tilt(theta_f):
+        cos_un, cos_ut = _cosines(lights, theta_f)
+        return jax.vmap(row, (None, None, None, 0))(cos_un, cos_ut, jnp.cos(theta_f), alphas)
+
+    return jax.lax.map(at_tilt, thetas)

@@ -16,7 +16,9 @@ OFF_GRID_EXPONENT = {"ps": 17, "g": 16, "q": 16, "r": 12}
 OFF_GRID_SEED = 20200717
 # 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py).
 LEG_OPTIONS = {"r": {"nodes": 32}}
-_BATCH = {"ps": 8192, "g": 8192, "q": 8192, "r": 64}
+# Points that are evaluated at once.
+CHUNK = 8192
+CHUNK_OF_R = 64
 
 
 @dataclass(frozen=True)
@@ -31,17 +33,18 @@ class Errors:
 
 def exact_values(integral: Integral, points: np.ndarray) -> np.ndarray:
     """Evaluate the integral's reference leg at points (n, axes)."""
-    return np.asarray(_values(integral.name, jnp.asarray(points)))
+    return np.asarray(exact_estimates(integral, points).value)
 
 
 def exact_estimates(integral: Integral, points: np.ndarray) -> Estimate:
     """Evaluate the same with the error that the leg states, both (n,)."""
-    return _estimates(integral.name, jnp.asarray(points))
+    chunk = CHUNK_OF_R if integral.name == "r" else CHUNK
+    return _in_chunks(functools.partial(_estimates, integral.name), points, chunk)
 
 
 def form_values(form: Form, points: np.ndarray) -> np.ndarray:
     """Evaluate a form at points (n, axes)."""
-    return np.asarray(_apply(form, jnp.asarray(points)))
+    return np.asarray(_in_chunks(functools.partial(_apply, form), points, CHUNK))
 
 
 def measure(difference: np.ndarray, points: np.ndarray, form: type[Form], weights=None) -> Errors:
@@ -65,18 +68,19 @@ def off_grid_reference(form: type[Form]) -> tuple[np.ndarray, np.ndarray]:
     return points, exact_values(form.integral, points)
 
 
+def _in_chunks(function, points: np.ndarray, chunk: int):
+    """Apply a function of (chunk, axes) to points (n, axes): it is compiled once for any n."""
+    count = len(points)
+    padded = np.concatenate([points, np.repeat(points[-1:], -count % chunk, axis=0)])
+    parts = [function(padded[first : first + chunk]) for first in range(0, count, chunk)]
+    return jax.tree.map(lambda *each: jnp.asarray(np.concatenate(each)[:count]), *parts)
+
+
 @functools.partial(jax.jit, static_argnums=0)
 def _estimates(name: str, points) -> Estimate:
     integral = INTEGRALS[name]
     leg = integral.legs[integral.reference]
-    options = LEG_OPTIONS.get(name, {})
-    return jax.lax.map(lambda x: leg(*x, **options), points, batch_size=_BATCH[name])
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _values(name: str, points):
-    # Apart from _estimates, so that the work for the error is left out.
-    return _estimates(name, points).value
+    return jax.vmap(lambda x: leg(*x, **LEG_OPTIONS.get(name, {})))(points)
 
 
 @jax.jit

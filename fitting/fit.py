@@ -69,7 +69,7 @@ def _refit_ps(count: int, weight: Weight, progress: Progress) -> Fit:
     grid = trapezoid_grid(RationalPs.axes[:2], count)
     progress("exact P_s and the best combination of Eq. (1) in every cell")
     cells = fit_cells(grid, weight)
-    progress("162 coefficients of Eq. (2), row by row and then together")
+    progress("162 coefficients of Eq. (2) together")
     form = RationalPs(fit_rational_ps(grid, cells))
     progress("errors and certificate")
     points = jnp.asarray(grid.points)
@@ -84,7 +84,7 @@ def _refit_ps(count: int, weight: Weight, progress: Progress) -> Fit:
         where={axis.name: float(x) for axis, x in zip(RationalPs.axes, place, strict=True)},
         points=len(grid.weights) * DIRECTIONS_PER_ANGLE**2,
     )
-    solver = "QR per cell; Levenberg–Marquardt (optimistix) per row, then jointly"
+    solver = "QR per cell; Levenberg–Marquardt (optimistix) of all coefficients together"
     error = 4 * np.finfo(float).eps / RationalPs.axes[0].lower  # integrals.ps.closed_form's own
     return _judged(form, grid, weight, DIRECTIONS_PER_ANGLE**2, solver, error, on_grid)
 
@@ -94,13 +94,12 @@ def _simple(form: type[Form], make_grid, fit, solver: str):
         grid = make_grid(form.axes, count)
         progress(f"exact {form.integral.symbol} on the grid")
         estimates = exact_estimates(form.integral, grid.points)
-        exact = np.asarray(estimates.value)
         progress(f"coefficients of {form.equation}")
-        fitted = form(fit(grid, jnp.asarray(exact)))
+        fitted = form(fit(grid, estimates.value))
         progress("errors and certificate")
-        difference = form_values(fitted, grid.points) - exact
+        difference = form_values(fitted, grid.points) - np.asarray(estimates.value)
         on_grid = measure(difference, grid.points, form, grid.weights)
-        error = float(jnp.max(estimates.error))
+        error = float(np.max(estimates.error))
         return _judged(fitted, grid, "uniform", 0, solver, error, on_grid)
 
     return run

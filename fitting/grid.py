@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.stats import qmc
 
 from integrals import Axis
 
@@ -68,6 +67,8 @@ def light_directions(theta_u: Axis, count: int, weight: Weight) -> tuple[np.ndar
 
 def off_grid_points(axes: tuple[Axis, ...], exponent: int, seed: int) -> np.ndarray:
     """Give 2^exponent scrambled Sobol' points (points, axes) of the axes' box."""
+    from scipy.stats import qmc  # noqa: PLC0415  it takes a second to import
+
     unit = qmc.Sobol(len(axes), rng=np.random.default_rng(seed)).random_base2(exponent)
     lower = np.array([axis.lower for axis in axes])
     upper = np.array([axis.upper for axis in axes])

@@ -19,11 +19,11 @@ from fitting.solve import solve_linear, solve_nonlinear
 # Denominators are pushed up to this at nodes of a grid of their own, PENALTY_NODES an axis.
 DENOMINATOR_FLOOR = 0.02
 PENALTY_NODES = 17
-# The joint fit ends here: by then it is within 0.1 % of the best that any c₀ … c₅ can do.
-JOINT_STEPS = 40
-# It uses every other node of a grid that has more than this many an axis: the surfaces are smooth,
-# and the time goes with the nodes. Its errors are measured on all of them, and between.
-JOINT_NODES = 33
+# The fit of P_s ends here: by then it is within 0.1 % of the best that any c₀ … c₅ can do.
+JOINT_STEPS = 100
+# It skips nodes of a grid that has more than this many an axis: the surfaces are smooth, and the
+# time goes with the nodes. Its errors are measured on all of them, and between.
+JOINT_NODES = 17
 
 
 def fit_quadratic_q(grid: Grid, exact: Array) -> Array:
@@ -57,79 +57,73 @@ def fit_rational_g(grid: Grid, exact: Array) -> Array:
 
 def fit_rational_r(grid: Grid, exact: Array) -> Array:
     """Fit Eq. (5) to R (points,) on a grid of (α, θf). Returns coefficients (17,)."""
-    return _fit_rows(grid, (exact - 0.5)[None], denominator_terms=3)[0]
+
+    @jax.jit
+    def fit(points: Array, penalised: Array, root: Array, exact: Array) -> Array:
+        numerator, features, beta = _features(points)
+        penalty_features = _features(penalised)[1][:, :3]
+
+        def residual(c: Array) -> Array:
+            value = 0.5 + beta * (numerator @ c[:14]) / (1 + features[:, :3] @ c[14:])
+            return jnp.concatenate(
+                [root * (value - exact), _penalty(1 + penalty_features @ c[14:])]
+            )
+
+        start = solve_linear((root * beta)[:, None] * numerator, root * (exact - 0.5))
+        return solve_nonlinear(residual, jnp.concatenate([start, jnp.zeros(3)]))
+
+    return fit(grid.points, _penalised(grid), np.sqrt(grid.weights), exact)
 
 
 def fit_rational_ps(grid: Grid, cells: Cells) -> Array:
     """Fit Eq. (2) on a grid of (α, θf) so that the error of P̃_s itself is least. Returns (6, 27).
 
-    First six separate fits of the cells' c₀ … c₅ on all nodes, then all 162 coefficients together
-    on the sum over directions, which `cells` holds exactly.
+    All 162 coefficients together, on the sum over directions, which `cells` holds exactly.
     """
-    targets = cells.coefficients.reshape(-1, 6).T - jnp.array([[0.5, 0, 0, 0, 0, 0]]).T
-    rows = _fit_rows(grid, targets, denominator_terms=13)
-    stride = 2 if len(grid.nodes[0]) > JOINT_NODES else 1
-    return _fit_jointly(*_every(stride, grid, cells), rows)
-
-
-def _every(stride: int, grid: Grid, cells: Cells) -> tuple[Grid, Cells]:
-    """Keep every `stride`-th node; a grid of an even number of nodes is kept whole."""
-    count = len(grid.nodes[0])
-    if (count - 1) % stride:
-        return grid, cells
-    some = slice(None, None, stride)
-    kept = Cells(cells.coefficients[some, some], cells.factors[some], cells.residuals[some, some])
-    return trapezoid_grid(grid.axes, (count - 1) // stride + 1), kept
-
-
-def _fit_rows(grid: Grid, targets: Array, denominator_terms: int) -> Array:
-    """Fit β (t + pᵀx) / (1 + qᵀy) to each of targets (rows, points); y are the first terms of x."""
-    features, beta = _features(grid)
-    root = jnp.sqrt(grid.weights)
-    numerator = jnp.concatenate([jnp.ones((len(beta), 1)), features], axis=1)
-    penalty_features = _penalty_features(grid)[:, :denominator_terms]
+    stride = -(-(len(grid.nodes[0]) - 1) // (JOINT_NODES - 1))
+    grid, cells = _every(stride, grid, cells)
+    root = np.sqrt(grid.weights).reshape(*cells.residuals.shape, 1)
+    offset = np.array([0.5, 0, 0, 0, 0, 0])
 
     @jax.jit
-    def fit(target: Array) -> Array:
-        def residual(z: Array) -> Array:
-            denominator = 1 + features[:, :denominator_terms] @ z[14:]
-            error = root * (beta * (numerator @ z[:14]) / denominator - target)
-            return jnp.concatenate([error, _penalty(1 + penalty_features @ z[14:])])
+    def fit(points: Array, penalised: Array, factors: Array, optimum: Array) -> Array:
+        numerator, features, beta = _features(points)
+        penalty_features = _features(penalised)[1]
 
-        matrix = (root * beta)[:, None] * numerator
-        start = jnp.concatenate([solve_linear(matrix, root * target), jnp.zeros(denominator_terms)])
-        return solve_nonlinear(residual, start)
-
-    return jnp.stack([fit(target) for target in targets])
-
-
-def _fit_jointly(grid: Grid, cells: Cells, rows: Array) -> Array:
-    features, beta = _features(grid)
-    numerator = jnp.concatenate([jnp.ones((len(beta), 1)), features], axis=1)
-    root = jnp.sqrt(jnp.asarray(grid.weights)).reshape(*cells.residuals.shape, 1)
-    penalty_features = _penalty_features(grid)
-    offset = jnp.array([0.5, 0, 0, 0, 0, 0])
-
-    @jax.jit
-    def fit(start: Array, factors: Array, optimum: Array) -> Array:
         def residual(z: Array) -> Array:
             p, q = z.reshape(6, 27)[:, :14].T, z.reshape(6, 27)[:, 14:].T
             material = offset + beta[:, None] * (numerator @ p) / (1 + features @ q)
             error = jnp.einsum("tij,atj->ati", factors, material.reshape(optimum.shape) - optimum)
             return jnp.concatenate([(root * error).ravel(), _penalty(1 + penalty_features @ q)])
 
-        return solve_nonlinear(residual, start, JOINT_STEPS)
+        weighted = jnp.asarray(root.reshape(-1, 1))
+        surfaces = weighted * (optimum.reshape(-1, 6) - offset)
+        start = solve_linear(weighted * beta[:, None] * numerator, surfaces)
+        polynomials = jnp.concatenate([start, jnp.zeros((13, 6))]).T
+        return solve_nonlinear(residual, polynomials.ravel(), JOINT_STEPS)
 
-    return fit(rows.ravel(), cells.factors, cells.coefficients).reshape(6, 27)
+    fitted = fit(grid.points, _penalised(grid), cells.factors, cells.coefficients)
+    return fitted.reshape(6, 27)
 
 
-def _features(grid: Grid) -> tuple[Array, Array]:
-    alpha, theta_f = jnp.asarray(grid.points.T)
-    return jax.jit(jax.vmap(terms))(alpha, theta_f), 1 - alpha
+def _every(stride: int, grid: Grid, cells: Cells) -> tuple[Grid, Cells]:
+    """Keep every `stride`-th node, or the next fewer that end where the grid does."""
+    count = len(grid.nodes[0])
+    while (count - 1) % stride:
+        stride -= 1
+    some = slice(None, None, stride)
+    kept = Cells(cells.coefficients[some, some], cells.factors[some], cells.residuals[some, some])
+    return trapezoid_grid(grid.axes, (count - 1) // stride + 1), kept
 
 
-def _penalty_features(grid: Grid) -> Array:
-    return _features(trapezoid_grid(grid.axes, PENALTY_NODES))[0]
+def _features(points: Array) -> tuple[Array, Array, Array]:
+    """Give (1, x), x and β at points (n, 2) of (α, θf)."""
+    x = jax.vmap(terms)(points[:, 0], points[:, 1])
+    return jnp.concatenate([jnp.ones((len(x), 1)), x], axis=1), x, 1 - points[:, 0]
+
+
+def _penalised(grid: Grid) -> np.ndarray:
+    return trapezoid_grid(grid.axes, PENALTY_NODES).points
 
 
 def _penalty(denominators: Array) -> Array:

@@ -5,7 +5,6 @@ from collections.abc import Callable
 import jax
 import jax.numpy as jnp
 import lineax as lx
-import numpy as np
 import optimistix as optx
 from jax import Array
 
@@ -13,38 +12,31 @@ Residual = Callable[[Array], Array]
 
 
 def solve_linear(matrix: Array, values: Array) -> Array:
-    """Give the z (n,) that minimises |matrix z − values|², matrix (m, n), m ≥ n, by QR."""
+    """Give the z (n,) that minimises |matrix z − values|², matrix (m, n), m ≥ n, by QR.
+
+    Several columns of values (m, k) give as many of z (n, k).
+    """
     scale = 1 / jnp.linalg.norm(matrix, axis=0)
     q, r = jnp.linalg.qr(matrix * scale)
-    return scale * jax.scipy.linalg.solve_triangular(r, q.T @ values)
+    return (scale * jax.scipy.linalg.solve_triangular(r, q.T @ values).T).T
 
 
 def solve_nonlinear(residual: Residual, start: Array, steps: int = 300) -> Array:
     """Minimise |residual(z)|² from `start` (n,) by Optimistix's Levenberg–Marquardt.
 
-    The unknowns are scaled by the columns of the Jacobian at the start, so that damping treats
-    them alike. Stops at a relative change of 1e-7 or after `steps`; judge the result by its
-    residual, not by the solver's word.
+    Stops at a relative change of 1e-7 or after `steps`; judge the result by its residual, not by
+    the solver's word.
     """
-    scale = _column_scale(residual, start)
     solver = optx.LevenbergMarquardt(rtol=1e-7, atol=1e-9, linear_solver=lx.Normal(lx.Cholesky()))
     solution = optx.least_squares(
-        lambda z, _: residual(z * scale), solver, start / scale, max_steps=steps, throw=False
+        lambda z, _: residual(z), solver, start, max_steps=steps, throw=False
     )
-    return solution.value * scale
+    return solution.value
 
 
 def solve_nonlinear_jaxopt(residual: Residual, start: Array, steps: int = 300) -> Array:
     """Minimise the same by jaxopt's Levenberg–Marquardt: a second opinion, for tests."""
     import jaxopt  # noqa: PLC0415  it warns at import, and only the cross-check needs it
 
-    scale = _column_scale(residual, start)
-    solver = jaxopt.LevenbergMarquardt(
-        lambda z: residual(z * scale), maxiter=steps, tol=1e-12, xtol=1e-12, gtol=1e-12
-    )
-    return solver.run(start / scale).params * scale
-
-
-def _column_scale(residual: Residual, start: Array) -> Array:
-    jacobian = jax.jacfwd(residual)(start)
-    return 1 / jnp.sqrt(jnp.sum(jacobian**2, axis=0) + np.finfo(float).eps)
+    solver = jaxopt.LevenbergMarquardt(residual, maxiter=steps, tol=1e-12, xtol=1e-12, gtol=1e-12)
+    return solver.run(start).params

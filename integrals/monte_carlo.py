@@ -7,7 +7,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from scipy.stats import qmc
 
 from integrals.integral import Estimate
 
@@ -30,6 +29,8 @@ def unit_points(samples: int, dimensions: int, sequence: Sequence, seed: int) ->
             raise ValueError(f"samples = {samples}: at least 2 are needed for a standard error")
         return np.random.default_rng(seed).random((1, samples, dimensions))
     if sequence == "sobol":
+        from scipy.stats import qmc  # noqa: PLC0415  it takes a second to import
+
         exponent = round(np.log2(samples / SCRAMBLINGS)) if samples > 0 else -1
         if exponent < 0 or SCRAMBLINGS << exponent != samples:
             raise ValueError(
