@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup refit test test-slow check figures bench format lock clean
+.PHONY: help setup refit test test-slow check figures report bench format lock clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -33,8 +33,11 @@ test: check  ## checks, then the default tests
 test-slow: setup  ## the full refits and the large sweeps
 	$(BIN)/pytest -n 2 -m slow
 
-figures: setup  ## draw the figures of README.md into docs/figures
+figures: setup  ## draw the figures of README.md and docs/gallery.md into docs/figures
 	$(BIN)/shadefit figures
+
+report: setup  ## write build/report.html: every table's worth, the figures, and an explorer
+	$(BIN)/shadefit report
 
 verify: toolchains  ## compile, run and compare the exported code of every table, in every language
 	$(BIN)/shadefit verify ps g q r published/ps published/g published/q published/r exact/ps \

@@ -4,7 +4,7 @@
 
 TOOLCHAINS := requirements-toolchains.lock
 # command:package of Debian, then its libraries that have no command
-TOOLCHAIN_COMMANDS := gcc:gcc g++:g++ node:nodejs glslangValidator:glslang-tools
+TOOLCHAIN_COMMANDS := gcc:gcc g++:g++ node:nodejs glslangValidator:glslang-tools chromium:chromium
 TOOLCHAIN_LIBRARIES := libvulkan1 mesa-vulkan-drivers
 PIP_TOOLCHAIN := .venv/bin/pip install --quiet --disable-pip-version-check --no-deps --require-hashes
 
