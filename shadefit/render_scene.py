@@ -1,0 +1,182 @@
+"""What is rendered: a sphere and a cloth draped over one, as points with normals and fibres.
+
+World axes: x to the right, y away from the camera, z up. Everything is NumPy or JAX arrays over the
+samples of a square image, row by row from its top left.
+"""
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+# Rays that march over the cloth: steps to it, halvings of the last step, steps towards the sun.
+_STEPS, _HALVINGS, _SHADOW_STEPS = 96, 12, 32
+# Directions and steps in which the cloth's horizon is looked for.
+_AZIMUTHS, _HORIZON_STEPS = 8, 12
+
+
+@dataclass(frozen=True)
+class Hits:
+    """What the image's samples see: arrays (n, 3), (n,); where `seen` is false, the backdrop.
+
+    `position` and unit `normal`, `comb` (the unit tangent that upright fibres lean to), `view`
+    towards the camera, `uv` (n, 2) in [0, 1) for maps, `open_sky` the part of the sky's light that
+    is not hidden by the surface itself.
+    """
+
+    seen: Array
+    position: Array
+    normal: Array
+    comb: Array
+    view: Array
+    uv: Array
+    open_sky: Array
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A name, what a camera sees of it, and the part of the sun that reaches points (n, 3)."""
+
+    name: str
+    hits: Callable[[int], Hits]
+    sunlit: Callable[[Array, Array], Array]
+
+
+def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[Array, Array]:
+    """Give the eye (3,) and the unit directions (size², 3) of a perspective camera.
+
+    `width` is the image's width at the distance of `target`; z is up.
+    """
+    eye_, target_ = np.array(eye, float), np.array(target, float)
+    ahead = (target_ - eye_) / np.linalg.norm(target_ - eye_)
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, ahead)
+    line = ((np.arange(size) + 0.5) / size - 0.5) * width / np.linalg.norm(target_ - eye_)
+    x, y = np.meshgrid(line, -line)
+    rays = ahead + x[..., None] * right + y[..., None] * up
+    rays = rays.reshape(-1, 3)
+    return jnp.asarray(eye_), jnp.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True))
+
+
+@functools.cache
+def _sphere_hits(size: int) -> Hits:
+    eye, rays = camera(size, (0, -6, 1.6), (0, 0, 0), 2.3)
+    along = rays @ eye
+    discriminant = along**2 - (eye @ eye - 1)
+    seen = discriminant > 0
+    distance = -along - jnp.sqrt(jnp.where(seen, discriminant, 0.0))
+    position = eye + distance[:, None] * rays
+    normal = position / jnp.linalg.norm(position, axis=1, keepdims=True)
+    comb = _tangent(normal, jnp.array([1.0, 0.0, 0.0]))
+    around = jnp.arctan2(position[:, 0], -position[:, 1]) / (2 * jnp.pi) + 0.5
+    uv = jnp.stack([around, jnp.arccos(jnp.clip(position[:, 2], -1, 1)) / jnp.pi], axis=1)
+    return Hits(seen, position, normal, comb, -rays, uv, jnp.ones(len(rays)))
+
+
+def cloth_height(x: Array, y: Array) -> Array:
+    """Give the height of a cloth that lies in folds and is draped over a ball."""
+    r2 = (x + 0.15) ** 2 + (y - 0.4) ** 2
+    ball = 0.55 * jnp.exp(-r2 / 0.36)
+    across = x + 0.28 * jnp.sin(1.5 * y + 0.7) + 0.1 * jnp.sin(2.9 * y - x)
+    along = y + 0.22 * jnp.sin(1.7 * x + 2.1)
+    folds = 0.13 * jnp.sin(4.2 * across + 1.1 * along + 0.8) + 0.06 * jnp.sin(
+        7.3 * across - 1.9 * along
+    )
+    crease = 0.028 * jnp.sin(10.3 * across + 2.3 * along + jnp.sin(3 * along))
+    return ball + (1 - 0.9 * jnp.exp(-r2 / 0.4)) * (folds + crease)
+
+
+@functools.cache
+def _cloth_hits(size: int) -> Hits:
+    eye, rays = camera(size, (0, -4.2, 4.4), (0, 0, 0.1), 2.9)
+    position = _march(eye, rays)
+    normal = _cloth_normal(position)
+    comb = _tangent(normal, jnp.array([1.0, 0.0, 0.0]))
+    uv = position[:, :2] / 4 + 0.5
+    uv = uv - jnp.floor(uv)
+    seen = jnp.ones(len(rays), bool)
+    return Hits(seen, position, normal, comb, -rays, uv, _open_sky(position, normal))
+
+
+@jax.jit
+def _cloth_normal(position: Array) -> Array:
+    slope = jax.vmap(jax.grad(lambda xy: cloth_height(xy[0], xy[1])))(position[:, :2])
+    normal = jnp.concatenate([-slope, jnp.ones((len(position), 1))], axis=1)
+    return normal / jnp.linalg.norm(normal, axis=1, keepdims=True)
+
+
+@jax.jit
+def _march(eye: Array, rays: Array) -> Array:
+    """Find where rays first meet the cloth: steps of equal length, then halvings."""
+    top, bottom = 1.0, -0.35
+    near, far = (top - eye[2]) / rays[:, 2], (bottom - eye[2]) / rays[:, 2]
+    step = (far - near) / _STEPS
+
+    def above(distance):
+        p = eye + distance[:, None] * rays
+        return p[:, 2] > cloth_height(p[:, 0], p[:, 1])
+
+    def advance(_, distance):
+        return jnp.where(above(distance + step), distance + step, distance)
+
+    def halve(i, distance):
+        forward = distance + step / 2.0 ** (i + 1)
+        return jnp.where(above(forward), forward, distance)
+
+    distance = jax.lax.fori_loop(0, _STEPS, advance, near)
+    distance = jax.lax.fori_loop(0, _HALVINGS, halve, distance)
+    return eye + distance[:, None] * rays
+
+
+@jax.jit
+def _cloth_sunlit(position: Array, sun: Array) -> Array:
+    """Give the part of a sun some degrees wide that the cloth leaves visible."""
+
+    def clearance(i, least):
+        distance = 0.02 + 1.6 * ((i + 1) / _SHADOW_STEPS) ** 1.5
+        p = position + distance * sun
+        room = (p[:, 2] - cloth_height(p[:, 0], p[:, 1])) / distance
+        return jnp.minimum(least, room)
+
+    room = jax.lax.fori_loop(0, _SHADOW_STEPS, clearance, jnp.full(len(position), 1.0))
+    lit = jnp.clip(room / 0.12 + 0.5, 0, 1)
+    return lit * lit * (3 - 2 * lit)
+
+
+@jax.jit
+def _open_sky(position: Array, normal: Array) -> Array:
+    """Estimate the part of the sky's cosine-weighted light that the cloth itself leaves open."""
+
+    def hidden(k, total):
+        azimuth = (k + 0.5) * 2 * jnp.pi / _AZIMUTHS
+        ahead = jnp.stack([jnp.cos(azimuth), jnp.sin(azimuth)])
+
+        def rise(i, steepest):
+            distance = 0.03 + 1.4 * ((i + 1) / _HORIZON_STEPS) ** 2
+            there = position[:, :2] + distance * ahead
+            height = cloth_height(there[:, 0], there[:, 1]) - position[:, 2]
+            return jnp.maximum(steepest, height / distance)
+
+        # How far the horizon stands above the tangent plane.
+        plane = -(normal[:, :2] @ ahead) / normal[:, 2]
+        slope = jax.lax.fori_loop(0, _HORIZON_STEPS, rise, plane)
+        return total + jnp.sin(jnp.arctan(slope)) - jnp.sin(jnp.arctan(plane))
+
+    total = jax.lax.fori_loop(0, _AZIMUTHS, hidden, jnp.zeros(len(position)))
+    return jnp.clip(1 - total / _AZIMUTHS, 0.05, 1)
+
+
+def _tangent(normal: Array, towards: Array) -> Array:
+    across = towards - (normal @ towards)[:, None] * normal
+    return across / jnp.maximum(jnp.linalg.norm(across, axis=1, keepdims=True), 1e-6)
+
+
+SCENES = {
+    "sphere": Scene("sphere", _sphere_hits, lambda position, _: jnp.ones(len(position))),
+    "cloth": Scene("cloth", _cloth_hits, _cloth_sunlit),
+}

@@ -1,0 +1,195 @@
+"""The radiance of a scene's points: the fuzz BRDF with any table's P_s, G, Q and R."""
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from coefficients.catalogue import form_of, load, names
+from fitting import Form
+from integrals import PS, G, Q, R
+from integrals.ps import scattered_fraction
+from shadefit.render_scene import Hits, Scene
+from shading import (
+    ambient_attenuation,
+    ambient_layer,
+    ambient_radiance,
+    base_attenuation,
+    fiber_normal_distribution,
+    fiber_projected_area,
+    irradiance,
+    layer_brdf,
+    mean_radiance,
+    roughness_from_spread,
+)
+
+# Least cosine of view and normal: at the very rim nothing has a limit.
+_LEAST_COSINE = 1e-3
+# The sky is a polynomial of the height above the horizon: zenith, horizon, ground.
+SKY = ((0.55, 0.70, 1.0), (0.95, 0.92, 0.88), (0.22, 0.19, 0.17))
+SUN = (1.0, 0.93, 0.82)
+BACKDROP = (0.60, 0.62, 0.66)
+_BATCH = 1 << 14
+# √(v·n) where G is tabulated: between them it is linear to 1e-5 (tests/test_render.py).
+_ROOTS = np.linspace(np.sqrt(_LEAST_COSINE), 1, 2049)
+
+
+@dataclass(frozen=True)
+class Functions:
+    """P_s(c, a, b, α, θf) of the cosines u·n, u·t, n·t; G(d, ν), Q(d) and R(α, θf)."""
+
+    ps: Callable[..., Array]
+    g: Callable[..., Array]
+    q: Callable[..., Array]
+    r: Callable[..., Array]
+
+
+class Material(NamedTuple):
+    """The layer and the base: density, spread, tilt θf in radians, and linear RGB albedos."""
+
+    density: float
+    spread: float
+    tilt: float
+    fiber: tuple[float, float, float]
+    base: tuple[float, float, float]
+
+
+class Light(NamedTuple):
+    """The sun's unit direction and irradiance, the sky's radiance: factors of `SUN` and `SKY`."""
+
+    direction: tuple[float, float, float]
+    sun: float
+    sky: float
+
+
+FOLDERS = {"published": "published/", "refitted": "", "best": "best/"}
+
+
+@functools.cache
+def table_sets() -> tuple[str, ...]:
+    """Name the sets of tables that are there: all four quantities of each."""
+    known = set(names())
+    return tuple(
+        name
+        for name, folder in FOLDERS.items()
+        if all(folder + x.name in known for x in (PS, G, Q, R))
+    )
+
+
+def functions(name: str) -> Functions:
+    """Give the four functions by name: 'exact', or tables as 'published', 'refitted', 'best'.
+
+    A table's arguments are clamped to its form's domain, as the listings do.
+    """
+    if name == "exact":
+        exact_ps = lambda c, a, b, alpha, _: scattered_fraction(c, a, b, alpha)  # noqa: E731
+        return Functions(exact_ps, G.value, Q.value, R.value)
+    ps, g, q, r = (clamped(form_of(load(FOLDERS[name] + x.name))) for x in (PS, G, Q, R))
+    return Functions(lambda c, a, b, *m: ps(*m, *_angles(c, a, b)), g, q, r)
+
+
+def clamped(form: Form) -> Callable[..., Array]:
+    """Give a form as a function whose arguments are first brought into the form's domain."""
+
+    def evaluate(*arguments):
+        inside = [
+            jnp.clip(x, axis.lower, axis.upper)
+            for x, axis in zip(arguments, type(form).axes, strict=True)
+        ]
+        return form(*inside)
+
+    return evaluate
+
+
+def _angles(cos_un: Array, cos_ut: Array, cos_nt: Array) -> tuple[Array, Array]:
+    """Give θu and |φ| from the cosines; forms of P_s are even in φ."""
+    sines = jnp.sqrt(jnp.maximum((1 - cos_un**2) * (1 - cos_nt**2), 1e-24))
+    return jnp.arccos(cos_un), jnp.arccos(jnp.clip((cos_ut - cos_un * cos_nt) / sines, -1, 1))
+
+
+def render(
+    scene: Scene, hits: Hits, material: Material, light: Light, name: str, azimuths: Array
+) -> np.ndarray:
+    """Give the linear radiance (n, 3) of a scene's samples, `BACKDROP`'s where nothing is seen.
+
+    `azimuths` (n,) turn the fibres about the normal, in radians. The ambient model takes the place
+    of an integral over the sky.
+    """
+    sunlit = scene.sunlit(hits.position, jnp.asarray(light.direction))
+    averages = _averages(name, material)
+    columns = (hits.normal, hits.comb, hits.view, hits.open_sky, azimuths, sunlit)
+    shaded = _in_batches(lambda part: _shade(name, part, material, light, averages), columns)
+    return np.where(np.asarray(hits.seen)[:, None], shaded, BACKDROP)
+
+
+def _in_batches(function: Callable, columns: tuple) -> np.ndarray:
+    """Apply a vectorised function to batches of one size, so that it is compiled once."""
+    arrays = [np.asarray(column) for column in columns]
+    count = len(arrays[0])
+    filled = [x[np.minimum(np.arange(count + -count % _BATCH), count - 1)] for x in arrays]
+    starts = range(0, len(filled[0]), _BATCH)
+    parts = [function([x[i : i + _BATCH] for x in filled]) for i in starts]
+    return np.concatenate([np.asarray(part) for part in parts])[:count]
+
+
+@functools.partial(jax.jit, static_argnums=0)
+def _averages(name: str, material: Material) -> tuple[Array, Array, Array]:
+    """Give what is constant for a material: G at `_ROOTS`² (nodes,), Q and R."""
+    chosen, alpha = functions(name), roughness_from_spread(material.spread)
+    g = jax.vmap(chosen.g, (None, 0))(material.density, _ROOTS**2)
+    return g, chosen.q(material.density), chosen.r(alpha, material.tilt)
+
+
+def sky_coefficients() -> np.ndarray:
+    """Give the nine harmonics (9, 3) of the sky: a + b z + c z² through `SKY`'s three colours."""
+    zenith, horizon, ground = (np.array(colour) for colour in SKY)
+    a, b, c = horizon, (zenith - ground) / 2, (zenith + ground) / 2 - horizon
+    light = np.zeros((9, 3))
+    light[0] = (a + c / 3) * np.sqrt(4 * np.pi)
+    light[2] = b * np.sqrt(4 * np.pi / 3)
+    light[6] = c * (2 / 3) * np.sqrt(4 * np.pi / 5)
+    return light
+
+
+@functools.partial(jax.jit, static_argnums=0)
+def _shade(name, columns, material, light, averages):
+    chosen, sky = functions(name), sky_coefficients()
+
+    def shade(*point):
+        return _point(chosen, sky, *point, material, light, averages)
+
+    return jax.vmap(shade)(*columns)
+
+
+def _point(chosen, sky, normal, comb, view, open_sky, azimuth, lit, material, light, averages):
+    alpha, (g, q, r) = roughness_from_spread(material.spread), averages
+    fiber_albedo, base_albedo = jnp.asarray(material.fiber), jnp.asarray(material.base)
+    across = jnp.cross(normal, comb)
+    leaning = jnp.cos(azimuth) * comb + jnp.sin(azimuth) * across
+    cos_nt = jnp.cos(material.tilt)
+    fiber = jnp.sin(material.tilt) * leaning + cos_nt * normal
+    cos_v = jnp.clip(view @ normal, _LEAST_COSINE, 1)
+
+    sun = jnp.asarray(light.direction)
+    above = sun @ normal
+    cos_u = jnp.clip(above, _LEAST_COSINE, 1)
+    between = sun + view
+    cos_ht = between @ fiber / jnp.maximum(jnp.linalg.norm(between), 1e-6)
+    phase = fiber_normal_distribution(cos_ht, alpha)
+    phase = phase / (4 * fiber_projected_area(sun @ fiber, alpha))
+    layer = layer_brdf(phase, cos_u, cos_v, material.density, fiber_albedo)
+    down = chosen.ps(cos_u, sun @ fiber, cos_nt, alpha, material.tilt)
+    base = base_attenuation(cos_u, cos_v, material.density, fiber_albedo, down) * base_albedo
+    direct = (layer + base / jnp.pi) * jnp.where(above > 0, cos_u, 0.0) * light.sun * lit
+
+    scattered = chosen.ps(cos_v, view @ fiber, cos_nt, alpha, material.tilt)
+    mean, received = mean_radiance(sky, normal), irradiance(sky, normal)
+    glow = ambient_layer(mean, fiber_albedo, jnp.interp(jnp.sqrt(cos_v), _ROOTS, g), scattered)
+    shadow = ambient_attenuation(cos_v, material.density, fiber_albedo, q, r)
+    ambient = ambient_radiance(glow, shadow, base_albedo, received) * light.sky * open_sky
+    return direct * jnp.asarray(SUN) + ambient
