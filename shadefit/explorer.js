@@ -61,7 +61,6 @@ function updateValues() {
         const [, number, error] = row.cells;
         error.className = Number.isFinite(value) ? "number" : "faint";
         number.textContent = Number.isFinite(value) ? value.toFixed(8) : "—";
-        number.dataset.value = String(value);
         if (!table) continue;
         error.textContent = Number.isFinite(value)
             ? `${value < truth ? "−" : "+"}${Math.abs(value - truth).toExponential(2)}`
@@ -75,7 +74,8 @@ function updateValues() {
 
 function drawCharts() {
     const name = against[current.name];
-    const angle = current.axes.find((axis) => axis.name === name).unit === "rad";
+    const { symbol, unit } = current.axes.find((axis) => axis.name === name);
+    const angle = unit === "rad";
     const show = angle ? degrees : (value) => value;
     const values = places(name);
     const points = values.map((value) => pointAlong(name, value));
@@ -90,10 +90,10 @@ function drawCharts() {
     const common = {
         xRange,
         xTicks: xTicks.filter((_, i) => !angle || !few || i % 2 === 0),
-        xLabel: NAMES[name] + (angle ? " / °" : ""),
+        xLabel: symbol + (angle ? " / °" : ""),
         mark: show(state[name]),
     };
-    const range = `against ${NAMES[name]} from ${short(xRange[0])} to ${short(xRange[1])}`;
+    const range = `against ${symbol} from ${short(xRange[0])} to ${short(xRange[1])}`;
     const lines = [line(styleOf({ kind: "exact" }), truth),
         ...chosen.map((table, i) => line(styleOf(table), fitted[i]))];
     const extremes = [Math.min(...truth), Math.max(...truth)].map((value) => value.toFixed(3));
@@ -124,7 +124,7 @@ function drawDiscs() {
         holder.replaceChildren(...wanted.map((name) => {
             const figure = document.createElement("figure");
             const canvas = document.createElement("canvas");
-            canvas.width = canvas.height = 144;
+            canvas.width = canvas.height = 120;
             canvas.setAttribute("role", "img");
             const caption = document.createElement("figcaption");
             caption.textContent = name === "exact" ? "exact, 0 to 1"
@@ -134,19 +134,22 @@ function drawDiscs() {
             return figure;
         }));
     }
-    const point = (x, y) =>
-        at({ theta_u: Math.asin(Math.min(Math.hypot(x, y), 1)), phi: Math.atan2(y, x) });
+    const point = (x, y) => [state.alpha, state.theta_f,
+        Math.asin(Math.min(Math.sqrt(x * x + y * y), 1)), Math.atan2(y, x)];
     const canvases = holder.querySelectorAll("canvas");
-    const truth = new Map();
-    disc(canvases[0], known.colours.values, (x, y) => {
-        const value = exported.exactPs(...point(x, y));
-        truth.set(1000 * x + y, value);
-        return value;
+    const truth = [];
+    disc(canvases[0], known.colours.values, (x, y, pixel) => {
+        truth[pixel] = exported.exactPs(...point(x, y));
+        return truth[pixel];
     });
-    chosen.forEach((table, i) => disc(canvases[i + 1], known.colours.errors, (x, y) => {
-        const error = evaluate(table, point(x, y)) - truth.get(1000 * x + y);
-        return 0.5 + error / (2 * DISC_ERROR);
-    }));
+    chosen.forEach((table, i) => {
+        const empty = outside(table, at({ theta_u: 0, phi: 0 }));
+        disc(canvases[i + 1], known.colours.errors, (x, y, pixel) => {
+            if (empty) return NaN;
+            const value = exported[table.function](...point(x, y));
+            return 0.5 + (value - truth[pixel]) / (2 * DISC_ERROR);
+        });
+    });
     const light = [Math.sin(state.theta_u), state.phi];
     for (const canvas of canvases) {
         const context = canvas.getContext("2d");
@@ -171,7 +174,7 @@ function control(axis) {
     group.className = "control";
     const label = document.createElement("label");
     label.htmlFor = `slide-${axis.name}`;
-    label.textContent = `${NAMES[axis.name]}, ${axis.meaning}`;
+    label.textContent = `${axis.symbol}, ${axis.meaning}`;
     const [range, number] = ["range", "number"].map((type) => {
         const input = document.createElement("input");
         input.type = type;
@@ -183,7 +186,7 @@ function control(axis) {
     range.id = `slide-${axis.name}`;
     range.step = unit === 1 ? 0.001 : 0.5;
     number.id = `enter-${axis.name}`;
-    number.setAttribute("aria-label", `${NAMES[axis.name]} as a number`);
+    number.setAttribute("aria-label", `${axis.symbol} as a number`);
     const set = (text, source) => {
         const entered = Number.parseFloat(text);
         const fits = entered >= Number(number.min) - 1e-9 && entered <= Number(number.max) + 1e-9;
@@ -208,7 +211,7 @@ function choose(name) {
     const choice = find("against");
     choice.replaceChildren(...current.axes.map((axis) => {
         const selected = axis.name === against[name];
-        return new Option(`${NAMES[axis.name]}, ${axis.meaning}`, axis.name, selected, selected);
+        return new Option(`${axis.symbol}, ${axis.meaning}`, axis.name, selected, selected);
     }));
     fillTable();
     draw();
@@ -221,7 +224,6 @@ function draw() {
     draw.frame = requestAnimationFrame(() => {
         drawCharts();
         drawDiscs();
-        document.documentElement.dataset.drawn = JSON.stringify(at());
     });
 }
 

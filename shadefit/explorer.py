@@ -8,6 +8,7 @@ here: P_s, G and Q in closed form, and every named table. R is the same product 
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 
 import numpy as np
@@ -62,14 +63,19 @@ def functions() -> dict[str, Function]:
     return {each.name: each for each in (*exact, *tables)}
 
 
+@cache
+def exported() -> str:
+    """Give the JavaScript of every function, as the printer writes it."""
+    return write(list(functions().values()), "javascript", "double")
+
+
 def script() -> str:
     """Give the page's whole script: exported functions, what is known of them, and the explorer."""
-    exported = write(list(functions().values()), "javascript", "double")
     known = json.dumps(_known(), ensure_ascii=False, allow_nan=False)
     own = [files("shadefit").joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS]
     names = ", ".join(functions())
     given = f"const exported = {{ {names} }};\nconst known = {known};"
-    parts = ['"use strict";', "(() => {", exported, given, *own, "})();"]
+    parts = ['"use strict";', "(() => {", exported(), given, *own, "})();"]
     # In a script element, nothing may look like its end.
     return "\n".join(parts).replace("</", "<\\/")
 

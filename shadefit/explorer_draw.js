@@ -42,7 +42,7 @@ function chart(container, { lines, bounds, xRange, xTicks, xLabel, yLabel, mark,
         role: "img",
         "aria-label": label,
     });
-    for (const value of ticks(low, high, height > 200 ? 5 : 4)) {
+    for (const value of ticks(low, high, height > 200 ? 6 : 5)) {
         svg.append(element("line", { class: value ? "grid" : "zero",
             x1: left, x2: width - right, y1: y(value), y2: y(value) }));
         svg.append(element("text", { class: "tick", x: left - 6, y: y(value) + 4,
@@ -73,14 +73,7 @@ function chart(container, { lines, bounds, xRange, xTicks, xLabel, yLabel, mark,
     container.replaceChildren(svg);
 }
 
-function colour(ramp, fraction) {
-    const place = Math.min(Math.max(fraction, 0), 1) * (ramp.length - 1);
-    const index = Math.min(Math.floor(place), ramp.length - 2);
-    const weight = place - index;
-    return ramp[index].map((part, i) => (1 - weight) * part + weight * ramp[index + 1][i]);
-}
-
-// Fills the unit disc of a square canvas: `value(x, y)` in [0, 1], NaN for nothing.
+// Fills the unit disc of a square canvas: `value(x, y, pixel)` in [0, 1], NaN for nothing.
 function disc(canvas, ramp, value) {
     const size = canvas.width;
     const context = canvas.getContext("2d");
@@ -91,9 +84,17 @@ function disc(canvas, ramp, value) {
             const y = 1 - ((row + 0.5) / size) * 2;
             // A little more than the disc: the style sheet cuts it round.
             if (x * x + y * y > 1.05) continue;
-            const fraction = value(x, y);
+            const pixel = row * size + column;
+            const fraction = value(x, y, pixel);
             if (!Number.isFinite(fraction)) continue;
-            image.data.set([...colour(ramp, fraction), 255], 4 * (row * size + column));
+            const place = Math.min(Math.max(fraction, 0), 1) * (ramp.length - 1);
+            const index = Math.min(Math.floor(place), ramp.length - 2);
+            const weight = place - index;
+            for (let part = 0; part < 3; ++part) {
+                const [low, high] = [ramp[index][part], ramp[index + 1][part]];
+                image.data[4 * pixel + part] = low + weight * (high - low);
+            }
+            image.data[4 * pixel + 3] = 255;
         }
     }
     context.putImageData(image, 0, 0);

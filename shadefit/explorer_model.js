@@ -2,7 +2,6 @@
 
 const STEPS = 160; // of a curve; R, which is an integral itself, has fewer
 const INTEGRAL_STEPS = 60;
-const NAMES = { alpha: "α", theta_f: "θf", theta_u: "θu", phi: "φ", density: "d", cos_v: "v·n" };
 
 const quantities = Object.fromEntries(known.quantities.map((each) => [each.name, each]));
 const state = Object.fromEntries(
@@ -34,7 +33,7 @@ const exact = {
 function outside(table, point) {
     return table.domain.flatMap(([low, high], i) => {
         const inside = point[i] >= low && point[i] <= high;
-        return inside ? [] : [NAMES[current.axes[i].name]];
+        return inside ? [] : [current.axes[i].symbol];
     }).join(", ");
 }
 

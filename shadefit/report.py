@@ -9,11 +9,12 @@ from pathlib import Path
 
 from coefficients.table import write_whole
 from integrals import INTEGRALS
+from shadefit import report_tables as tables
 from shadefit.explorer import script
 from shadefit.figures import PICTURES, render
 from shadefit.figures.values import quantities
 from shadefit.refit import require_writable
-from shadefit.report_tables import errata, markup, provenance, summary
+from shadefit.report_tables import markup
 from shadefit.terminal import stages
 
 
@@ -38,13 +39,23 @@ def run(out: Path) -> None:
 
 def page(pictures: Mapping[str, bytes]) -> str:
     """Give the report with PNG files of pictures, by the name of the picture."""
+    return assemble(
+        tables.summary(quantities()),
+        "\n".join(_figure(name, data) for name, data in pictures.items()),
+        tables.errata(),
+        tables.provenance(),
+    )
+
+
+def assemble(summary: str, figures: str, errata: str, provenance: str) -> str:
+    """Give the page with the explorer and these sections, each in HTML."""
     parts = {
         "style": _packaged("report.css"),
         "quantities": _choices(),
-        "summary": summary(),
-        "figures": "\n".join(_figure(name, data) for name, data in pictures.items()),
-        "errata": errata(),
-        "provenance": provenance(),
+        "summary": summary,
+        "figures": figures,
+        "errata": errata,
+        "provenance": provenance,
         "script": script(),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: parts[slot[1]], _packaged("report.html"))

@@ -1,6 +1,7 @@
 """The report's tables in HTML: what each table costs and is worth, its errata, where it is from."""
 
 import re
+from collections.abc import Sequence
 from html import escape
 
 from coefficients.catalogue import AS_PRINTED, load, names
@@ -10,7 +11,6 @@ from coefficients.table import Table
 from integrals import INTEGRALS
 from programs.trace import trace
 from shadefit.figures.frontier import Mark, marks
-from shadefit.figures.values import quantities
 
 _COLUMNS = (
     "table",
@@ -23,12 +23,15 @@ _COLUMNS = (
     "ratio",
     "denominators proven ≥",
 )
+_TEXT = ' class="text"'
 
 
-def summary() -> str:
-    """Give the table of all tables: form, operations, errors, ratios, certificates."""
-    head = "".join(f'<th scope="col">{column}</th>' for column in _COLUMNS)
-    rows = [row for quantity in quantities() for row in _group(quantity)]
+def summary(chosen: Sequence[str]) -> str:
+    """Give the table of all tables of some quantities: form, operations, errors, certificates."""
+    head = "".join(
+        f'<th scope="col"{_TEXT if column == "form" else ""}>{column}</th>' for column in _COLUMNS
+    )
+    rows = [row for quantity in chosen for row in _group(quantity)]
     return (
         '<div class="scroll" tabindex="0" role="region" aria-labelledby="summary-title">\n'
         f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n" + "\n".join(rows) + "\n</tbody>\n"
@@ -62,7 +65,7 @@ def _row(mark: Mark, base: Mark, quantity: str) -> str:
         f"{mark.largest / base.largest:.3g}",
         _certificate(table),
     ]
-    first = f'<td class="text">{escape(cells[0])}</td>'
+    first = f"<td{_TEXT}>{escape(cells[0])}</td>"
     rest = "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:])
     return f'<tr><th scope="row">{escape(mark.name)}</th>{first}{rest}</tr>'
 

@@ -1,6 +1,7 @@
 """The frontier: what an evaluation costs against how wrong it is, for every table there is."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,7 +20,7 @@ from programs.function import Function, Parameter
 from programs.program import evaluate
 from programs.trace import trace
 from shadefit.figures.style import COLOURS, MARKERS
-from shadefit.figures.values import kind_of, tables_of
+from shadefit.figures.values import kind_of, quantities, tables_of
 
 _DENSITY, _COS_V = Parameter("density", (0.0, 0.5)), Parameter("NdotV", (0.001, 1.0))
 _KINDS = {
@@ -48,9 +49,12 @@ class Mark:
 def draw_frontier() -> Figure:
     """Draw the largest error of every table against its operations, a panel a quantity."""
     figure = Figure(figsize=(9.6, 7.2), layout="constrained")
-    panels = figure.subplots(2, 2, sharex=True).ravel()
-    for axes, quantity in zip(panels, INTEGRALS, strict=True):
+    drawn = quantities()
+    panels = figure.subplots(-(-len(drawn) // 2), 2, sharex=True).ravel()
+    for axes, quantity in zip(panels, drawn, strict=False):
         _panel(axes, quantity, marks(quantity))
+    for axes in panels[len(drawn) :]:
+        axes.set_visible(False)
     handles = [
         Line2D(
             *([], []),
@@ -66,7 +70,8 @@ def draw_frontier() -> Figure:
     return figure
 
 
-def marks(quantity: str) -> list[Mark]:
+@lru_cache(maxsize=8)
+def marks(quantity: str) -> tuple[Mark, ...]:
     """Give a mark for every named table of a quantity, and for its closed form where there is one.
 
     A table's errors are those of its float64 form, on the off-grid points of the published one; the
@@ -88,7 +93,7 @@ def marks(quantity: str) -> list[Mark]:
         )
         for entry in entries
     ]
-    return [*found, *_closed_form(quantity)]
+    return (*found, *_closed_form(quantity))
 
 
 def _closed_form(quantity: str) -> list[Mark]:
@@ -103,7 +108,7 @@ def _closed_form(quantity: str) -> list[Mark]:
     return [Mark("closed form", "exact", count(program).operations, float(error.max()), rms)]
 
 
-def best_so_far(every: list[Mark]) -> list[Mark]:
+def best_so_far(every: tuple[Mark, ...]) -> list[Mark]:
     """Give the marks that no other one beats in both operations and largest error, by cost."""
     best: list[Mark] = []
     for mark in sorted(every, key=lambda mark: (mark.operations, mark.largest)):
@@ -112,7 +117,7 @@ def best_so_far(every: list[Mark]) -> list[Mark]:
     return best
 
 
-def _panel(axes: Axes, quantity: str, every: list[Mark]) -> None:
+def _panel(axes: Axes, quantity: str, every: tuple[Mark, ...]) -> None:
     best = best_so_far(every)
     axes.step(
         [mark.operations for mark in best],

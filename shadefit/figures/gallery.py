@@ -30,8 +30,8 @@ def _spherical(number: int, alpha: float) -> Picture:
         f"Figure {number} of the supplement: P_s and P̃_s, α = {alpha:g}",
         f"P_s over the hemisphere of lights for α = {alpha:g} as a spherical plot: the surface is "
         "as far from the centre as P_s is large, the circles have radius ½ and 1, the fibre is "
-        "the orange line. The tables are evaluated as listed: θf is clamped to 0.1 in the first "
-        "column.",
+        "the orange line, colours are lightly shaded. The tables are evaluated as listed: θf is "
+        "clamped to 0.1 in the first column.",
         partial(draw_spherical, alpha),
     )
 

@@ -7,11 +7,17 @@ import numpy as np
 from coefficients.catalogue import AS_PRINTED, names
 from coefficients.shaders import Shader, shader
 from fitting import exact_values
-from integrals import Integral
+from integrals import INTEGRALS, Integral
 from programs.program import evaluate
 from programs.trace import trace
 
 _FOLDERS = {"published": "published", "best": "best", "": "refitted", "refit": "refitted"}
+
+
+def quantities() -> list[str]:
+    """List the quantities that have a published table, which the others are held against."""
+    known = names()
+    return [name for name in INTEGRALS if f"published/{name}" in known]
 
 
 def tables_of(quantity: str) -> list[str]:
