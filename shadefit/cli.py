@@ -303,6 +303,17 @@ def _report(
     report.run(out)
 
 
+@app.command("ambient", epilog="Example: shadefit ambient --out /tmp/figures")
+def _ambient(
+    out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("docs/figures"),
+    json: Json = False,
+) -> None:
+    """Measure the ambient model against the integral of the whole BRDF, and its energy."""
+    from shadefit import ambient
+
+    ambient.run(out, json)
+
+
 @app.command("list", epilog="Example: shadefit list --json")
 def _list(json: Json = False) -> None:
     """List the tables that have a name."""

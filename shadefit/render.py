@@ -9,9 +9,10 @@ from coefficients.table import write_whole_bytes
 from integrals import PS, Axis
 from shadefit.refit import require_writable
 from shadefit.render_fibers import azimuths
+from shadefit.render_functions import table_sets
 from shadefit.render_image import colour, write_exr
 from shadefit.render_scene import SCENES
-from shadefit.render_shade import Light, Material, render, table_sets
+from shadefit.render_shade import Light, Material, render
 from shadefit.render_sheet import compare_sheet
 from shadefit.terminal import print_json, print_table, stages
 

@@ -3,9 +3,7 @@
 import io
 from pathlib import Path
 
-import jax.numpy as jnp
 import numpy as np
-from jax import Array
 
 from shadefit.render_scene import Hits
 
@@ -15,7 +13,7 @@ _WAVES, _SHORTEST, _LONGEST, _TURN = 24, 0.3, 1.1, 1.3
 _MAX_BYTES = 64 << 20
 
 
-def azimuths(fibers: str, hits: Hits) -> Array:
+def azimuths(fibers: str, hits: Hits) -> np.ndarray:
     """Give the turns (n,) of the fibres about the normal, in radians.
 
     `fibers` is 'even', 'crushed', or the path of a PNG whose red and green, 0 … 1 for −1 … 1, are
@@ -23,21 +21,21 @@ def azimuths(fibers: str, hits: Hits) -> Array:
     such image.
     """
     if fibers == EVEN:
-        return jnp.zeros(len(hits.position))
+        return np.zeros(len(hits.position))
     if fibers == CRUSHED:
         return _crushed(hits.position)
     return _from_map(_read(Path(fibers)), hits.uv)
 
 
-def _crushed(position: Array) -> Array:
+def _crushed(position: np.ndarray) -> np.ndarray:
     """Turn fibres by a smooth pattern with plateaus, the same for every run."""
     rng = np.random.default_rng(20200717)
     ways = rng.normal(size=(_WAVES, 3))
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     lengths = np.exp(rng.uniform(np.log(_SHORTEST), np.log(_LONGEST), _WAVES))
     phases, weights = rng.uniform(0, 2 * np.pi, _WAVES), lengths / np.sqrt(np.sum(lengths**2) / 2)
-    waves = jnp.sin(position @ (2 * np.pi * ways / lengths[:, None]).T + phases)
-    return _TURN * jnp.tanh(1.5 * (waves @ weights))
+    waves = np.sin(position @ (2 * np.pi * ways / lengths[:, None]).T + phases)
+    return _TURN * np.tanh(1.5 * (waves @ weights))
 
 
 def _read(path: Path) -> np.ndarray:
@@ -60,14 +58,14 @@ def _read(path: Path) -> np.ndarray:
     return 2 * np.asarray(pixels[..., :2], float) - 1
 
 
-def _from_map(pixels: np.ndarray, uv: Array) -> Array:
+def _from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
     """Interpolate directions, not angles: an angle has a seam."""
     height, width, _ = pixels.shape
-    x, y = (np.asarray(uv[:, i]) * n - 0.5 for i, n in ((0, width), (1, height)))
+    x, y = (uv[:, i] * n - 0.5 for i, n in ((0, width), (1, height)))
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)
     total = np.zeros((len(x), 2))
     for i in (0, 1):
         for j in (0, 1):
             weight = np.abs(1 - i - (x - left)) * np.abs(1 - j - (y - top))
             total += weight[:, None] * pixels[(top + j) % height, (left + i) % width]
-    return jnp.asarray(np.arctan2(total[:, 1], total[:, 0]))
+    return np.arctan2(total[:, 1], total[:, 0])

@@ -1,7 +1,7 @@
 """What is rendered: a sphere and a cloth draped over one, as points with normals and fibres.
 
-World axes: x to the right, y away from the camera, z up. Everything is NumPy or JAX arrays over the
-samples of a square image, row by row from its top left.
+World axes: x to the right, y away from the camera, z up. Everything is arrays over the samples of a
+square image, row by row from its top left.
 """
 
 import functools
@@ -28,13 +28,13 @@ class Hits:
     is not hidden by the surface itself.
     """
 
-    seen: Array
-    position: Array
-    normal: Array
-    comb: Array
-    view: Array
-    uv: Array
-    open_sky: Array
+    seen: np.ndarray
+    position: np.ndarray
+    normal: np.ndarray
+    comb: np.ndarray
+    view: np.ndarray
+    uv: np.ndarray
+    open_sky: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -43,10 +43,10 @@ class Scene:
 
     name: str
     hits: Callable[[int], Hits]
-    sunlit: Callable[[Array, Array], Array]
+    sunlit: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
-def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[Array, Array]:
+def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[np.ndarray, np.ndarray]:
     """Give the eye (3,) and the unit directions (size², 3) of a perspective camera.
 
     `width` is the image's width at the distance of `target`; z is up.
@@ -60,7 +60,7 @@ def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[Array, A
     x, y = np.meshgrid(line, -line)
     rays = ahead + x[..., None] * right + y[..., None] * up
     rays = rays.reshape(-1, 3)
-    return jnp.asarray(eye_), jnp.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True))
+    return eye_, rays / np.linalg.norm(rays, axis=1, keepdims=True)
 
 
 @functools.cache
@@ -69,13 +69,12 @@ def _sphere_hits(size: int) -> Hits:
     along = rays @ eye
     discriminant = along**2 - (eye @ eye - 1)
     seen = discriminant > 0
-    distance = -along - jnp.sqrt(jnp.where(seen, discriminant, 0.0))
+    distance = -along - np.sqrt(np.where(seen, discriminant, 0.0))
     position = eye + distance[:, None] * rays
-    normal = position / jnp.linalg.norm(position, axis=1, keepdims=True)
-    comb = _tangent(normal, jnp.array([1.0, 0.0, 0.0]))
-    around = jnp.arctan2(position[:, 0], -position[:, 1]) / (2 * jnp.pi) + 0.5
-    uv = jnp.stack([around, jnp.arccos(jnp.clip(position[:, 2], -1, 1)) / jnp.pi], axis=1)
-    return Hits(seen, position, normal, comb, -rays, uv, jnp.ones(len(rays)))
+    normal = position / np.linalg.norm(position, axis=1, keepdims=True)
+    around = np.arctan2(position[:, 0], -position[:, 1]) / (2 * np.pi) + 0.5
+    uv = np.stack([around, np.arccos(np.clip(position[:, 2], -1, 1)) / np.pi], axis=1)
+    return Hits(seen, position, normal, _comb(normal), -rays, uv, np.ones(len(rays)))
 
 
 def cloth_height(x: Array, y: Array) -> Array:
@@ -94,13 +93,11 @@ def cloth_height(x: Array, y: Array) -> Array:
 @functools.cache
 def _cloth_hits(size: int) -> Hits:
     eye, rays = camera(size, (0, -4.2, 4.4), (0, 0, 0.1), 2.9)
-    position = _march(eye, rays)
-    normal = _cloth_normal(position)
-    comb = _tangent(normal, jnp.array([1.0, 0.0, 0.0]))
-    uv = position[:, :2] / 4 + 0.5
-    uv = uv - jnp.floor(uv)
-    seen = jnp.ones(len(rays), bool)
-    return Hits(seen, position, normal, comb, -rays, uv, _open_sky(position, normal))
+    position = np.asarray(_march(jnp.asarray(eye), jnp.asarray(rays)))
+    normal = np.asarray(_cloth_normal(jnp.asarray(position)))
+    open_sky = np.asarray(_open_sky(jnp.asarray(position), jnp.asarray(normal)))
+    uv = (position[:, :2] / 4 + 0.5) % 1
+    return Hits(np.ones(len(rays), bool), position, normal, _comb(normal), -rays, uv, open_sky)
 
 
 @jax.jit
@@ -133,9 +130,13 @@ def _march(eye: Array, rays: Array) -> Array:
     return eye + distance[:, None] * rays
 
 
+def _cloth_sunlit(position: np.ndarray, sun: np.ndarray) -> np.ndarray:
+    """Give the part of a sun some degrees wide that the cloth leaves visible, (n,)."""
+    return np.asarray(_visible_sun(jnp.asarray(position), jnp.asarray(sun)))
+
+
 @jax.jit
-def _cloth_sunlit(position: Array, sun: Array) -> Array:
-    """Give the part of a sun some degrees wide that the cloth leaves visible."""
+def _visible_sun(position: Array, sun: Array) -> Array:
 
     def clearance(i, least):
         distance = 0.02 + 1.6 * ((i + 1) / _SHADOW_STEPS) ** 1.5
@@ -171,12 +172,13 @@ def _open_sky(position: Array, normal: Array) -> Array:
     return jnp.clip(1 - total / _AZIMUTHS, 0.05, 1)
 
 
-def _tangent(normal: Array, towards: Array) -> Array:
-    across = towards - (normal @ towards)[:, None] * normal
-    return across / jnp.maximum(jnp.linalg.norm(across, axis=1, keepdims=True), 1e-6)
+def _comb(normal: np.ndarray) -> np.ndarray:
+    """Give the unit tangents (n, 3) that are nearest to the x axis; shorter only where it is n."""
+    across = np.array([1.0, 0.0, 0.0]) - normal[:, :1] * normal
+    return across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-6)
 
 
 SCENES = {
-    "sphere": Scene("sphere", _sphere_hits, lambda position, _: jnp.ones(len(position))),
+    "sphere": Scene("sphere", _sphere_hits, lambda position, _: np.ones(len(position))),
     "cloth": Scene("cloth", _cloth_hits, _cloth_sunlit),
 }

@@ -2,7 +2,6 @@
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import jax
@@ -10,10 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from coefficients.catalogue import form_of, load, names
-from fitting import Form
-from integrals import PS, G, Q, R
-from integrals.ps import scattered_fraction
+from shadefit.render_functions import functions
 from shadefit.render_scene import Hits, Scene
 from shading import (
     ambient_attenuation,
@@ -39,16 +35,6 @@ _BATCH = 1 << 14
 _ROOTS = np.linspace(np.sqrt(_LEAST_COSINE), 1, 2049)
 
 
-@dataclass(frozen=True)
-class Functions:
-    """P_s(c, a, b, α, θf) of the cosines u·n, u·t, n·t; G(d, ν), Q(d) and R(α, θf)."""
-
-    ps: Callable[..., Array]
-    g: Callable[..., Array]
-    q: Callable[..., Array]
-    r: Callable[..., Array]
-
-
 class Material(NamedTuple):
     """The layer and the base: density, spread, tilt θf in radians, and linear RGB albedos."""
 
@@ -67,71 +53,25 @@ class Light(NamedTuple):
     sky: float
 
 
-FOLDERS = {"published": "published/", "refitted": "", "best": "best/"}
-
-
-@functools.cache
-def table_sets() -> tuple[str, ...]:
-    """Name the sets of tables that are there: all four quantities of each."""
-    known = set(names())
-    return tuple(
-        name
-        for name, folder in FOLDERS.items()
-        if all(folder + x.name in known for x in (PS, G, Q, R))
-    )
-
-
-def functions(name: str) -> Functions:
-    """Give the four functions by name: 'exact', or tables as 'published', 'refitted', 'best'.
-
-    A table's arguments are clamped to its form's domain, as the listings do.
-    """
-    if name == "exact":
-        exact_ps = lambda c, a, b, alpha, _: scattered_fraction(c, a, b, alpha)  # noqa: E731
-        return Functions(exact_ps, G.value, Q.value, R.value)
-    ps, g, q, r = (clamped(form_of(load(FOLDERS[name] + x.name))) for x in (PS, G, Q, R))
-    return Functions(lambda c, a, b, *m: ps(*m, *_angles(c, a, b)), g, q, r)
-
-
-def clamped(form: Form) -> Callable[..., Array]:
-    """Give a form as a function whose arguments are first brought into the form's domain."""
-
-    def evaluate(*arguments):
-        inside = [
-            jnp.clip(x, axis.lower, axis.upper)
-            for x, axis in zip(arguments, type(form).axes, strict=True)
-        ]
-        return form(*inside)
-
-    return evaluate
-
-
-def _angles(cos_un: Array, cos_ut: Array, cos_nt: Array) -> tuple[Array, Array]:
-    """Give θu and |φ| from the cosines; forms of P_s are even in φ."""
-    sines = jnp.sqrt(jnp.maximum((1 - cos_un**2) * (1 - cos_nt**2), 1e-24))
-    return jnp.arccos(cos_un), jnp.arccos(jnp.clip((cos_ut - cos_un * cos_nt) / sines, -1, 1))
-
-
 def render(
-    scene: Scene, hits: Hits, material: Material, light: Light, name: str, azimuths: Array
+    scene: Scene, hits: Hits, material: Material, light: Light, name: str, azimuths: np.ndarray
 ) -> np.ndarray:
     """Give the linear radiance (n, 3) of a scene's samples, `BACKDROP`'s where nothing is seen.
 
     `azimuths` (n,) turn the fibres about the normal, in radians. The ambient model takes the place
     of an integral over the sky.
     """
-    sunlit = scene.sunlit(hits.position, jnp.asarray(light.direction))
+    sunlit = scene.sunlit(hits.position, np.array(light.direction))
     averages = _averages(name, material)
     columns = (hits.normal, hits.comb, hits.view, hits.open_sky, azimuths, sunlit)
     shaded = _in_batches(lambda part: _shade(name, part, material, light, averages), columns)
-    return np.where(np.asarray(hits.seen)[:, None], shaded, BACKDROP)
+    return np.where(hits.seen[:, None], shaded, BACKDROP)
 
 
 def _in_batches(function: Callable, columns: tuple) -> np.ndarray:
     """Apply a vectorised function to batches of one size, so that it is compiled once."""
-    arrays = [np.asarray(column) for column in columns]
-    count = len(arrays[0])
-    filled = [x[np.minimum(np.arange(count + -count % _BATCH), count - 1)] for x in arrays]
+    count = len(columns[0])
+    filled = [x[np.minimum(np.arange(count + -count % _BATCH), count - 1)] for x in columns]
     starts = range(0, len(filled[0]), _BATCH)
     parts = [function([x[i : i + _BATCH] for x in filled]) for i in starts]
     return np.concatenate([np.asarray(part) for part in parts])[:count]

@@ -66,7 +66,7 @@ def test_the_quadrature_is_within_its_stated_error():
     assert np.all(error[k >= -DOMAIN_END] < 1e-13)
 
 
-@pytest.mark.parametrize("sequence", ["random", "sobol"])
+@pytest.mark.parametrize("sequence", ["random", pytest.param("sobol", marks=pytest.mark.slow)])
 def test_monte_carlo_is_within_five_standard_errors(sequence):
     k = np.array([0.0, -0.1, -0.6, -0.95])
     value, error = jax.jit(jax.vmap(functools.partial(NORM.monte_carlo, sequence=sequence)))(k)
@@ -77,13 +77,12 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
 
 def test_known_values():
     """Isotropic scattering; and −1 < k → −1, where the lobe is a ring that only s/4 tames."""
-    assert NORM.value(0.0) == 1
+    assert VALUE(np.array([0.0])) == 1
     for gap in (1e-8, 1e-12):
         s = np.sqrt(gap * (2 - gap))
-        np.testing.assert_allclose(NORM.value(-1 + gap), s / 4, rtol=16 * np.sqrt(gap))
-    np.testing.assert_allclose(jax.grad(NORM.value)(0.0), 16 / (3 * np.pi), rtol=1e-14)
-    assert np.isnan(NORM.value(-1.0))
-    assert np.isnan(NORM.value(0.1))
+        np.testing.assert_allclose(VALUE(np.array([gap - 1])), s / 4, rtol=16 * np.sqrt(gap))
+    np.testing.assert_allclose(SLOPE(np.array([0.0])), 16 / (3 * np.pi), rtol=1e-14)
+    assert np.isnan(VALUE(np.array([-1.0, 0.1, np.nan]))).all()
 
 
 def test_no_direction_of_light_gains_energy():
@@ -98,10 +97,11 @@ def test_no_direction_of_light_gains_energy():
 
 def test_most_energy_is_lost_along_the_fibre():
     """∫ p dω_v at u = t is 2 (1 − x²) (ln(1 − x) + 1/(1 − x) − 1)/x²."""
-    for x in (0.1, 0.5, 0.95):
-        exact = 2 * (1 - x * x) * (np.log1p(-x) + 1 / (1 - x) - 1) / x**2
-        np.testing.assert_allclose(scattered_energy(-x, 1.0), exact, rtol=1e-12)
-    assert scattered_energy(-0.95, 1.0) * NORM.value(-0.95) < 0.3
+    x = np.array([1e-3, 0.1, 0.5, 0.8, 0.95, 0.99])
+    exact = 2 * (1 - x * x) * (np.log1p(-x) + 1 / (1 - x) - 1) / x**2
+    found = energies()(-x, np.linspace(1, 0, 62))[:, 0]
+    np.testing.assert_allclose(found, exact, rtol=1e-9)
+    assert 0.29 < found[4] * VALUE(-x)[4] < 0.3
 
 
 def test_with_the_printed_sign_the_talks_promise_is_broken():
@@ -117,10 +117,11 @@ def test_with_the_printed_sign_the_talks_promise_is_broken():
 
     assert printed(-0.5, True) > 1.1 * printed(-0.5, False)
     # The same with the sign of k turned is what is meant.
-    np.testing.assert_allclose(printed(0.5, False), 1 / NORM.value(-0.5), rtol=1e-12)
-    np.testing.assert_allclose(printed(0.5, True), scattered_energy(-0.5, 1.0), rtol=1e-12)
+    np.testing.assert_allclose(printed(0.5, False), 1 / VALUE(np.array([-0.5])), rtol=1e-12)
+    assert printed(0.5, True) < printed(0.5, False)
 
 
+@pytest.mark.slow
 def test_derivatives_are_finite_and_those_of_finite_differences():
     k = np.concatenate([asymmetries(2, 5), [-1 + 1e-15]])
     slopes = SLOPE(k)
@@ -148,7 +149,7 @@ def fitted(count) -> ConservativeNorm:
     return ConservativeNorm(fit_conservative_norm(grid, exact))
 
 
-@pytest.mark.parametrize("count", [9, 65])
+@pytest.mark.parametrize("count", [9, pytest.param(65, marks=pytest.mark.slow)])
 def test_the_fit_loses_little_energy_and_creates_none(count):
     form = fitted(count)
     assert certify_conservative(form).holds
@@ -162,7 +163,7 @@ def test_the_fit_loses_little_energy_and_creates_none(count):
 
 
 def test_a_fit_that_creates_energy_is_not_certified():
-    form = fitted(65)
+    form = fitted(9)
     bound = certify_conservative(form).bound
     assert 0 < bound <= MARGIN
     for coefficient, below in ((0, 2 * MARGIN), (1, 1e-4), (2, 1e-3)):
@@ -173,4 +174,4 @@ def test_a_fit_that_creates_energy_is_not_certified():
 
 def test_the_form_is_differentiable_on_its_closed_domain():
     k = np.array([0.0, -1e-9, -0.4, -DOMAIN_END])
-    assert np.isfinite(jax.vmap(jax.grad(fitted(65)))(k)).all()
+    assert np.isfinite(jax.vmap(jax.grad(fitted(9)))(k)).all()

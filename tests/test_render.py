@@ -13,9 +13,10 @@ from integrals import G
 from shadefit.cli import main
 from shadefit.render import Settings, image, run
 from shadefit.render_fibers import azimuths
+from shadefit.render_functions import table_sets
 from shadefit.render_image import colour, from_srgb, read_exr, srgb, write_exr
 from shadefit.render_scene import SCENES, cloth_height
-from shadefit.render_shade import _ROOTS, BACKDROP, sky_coefficients, table_sets
+from shadefit.render_shade import _ROOTS, BACKDROP, sky_coefficients
 from shadefit.render_sheet import round_up
 from shading import irradiance, radiance
 
@@ -80,6 +81,7 @@ def test_the_sky_is_its_three_colours():
     np.testing.assert_allclose(radiance(light, below), (0.22, 0.19, 0.17), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_tabulated_g_is_g_to_what_an_image_can_show():
     roots = np.linspace(_ROOTS[0], 1, 3001)
     exact = jax.jit(jax.vmap(G.value, (None, 0)))
@@ -88,7 +90,7 @@ def test_the_tabulated_g_is_g_to_what_an_image_can_show():
         np.testing.assert_allclose(between, exact(density, roots**2), atol=1e-5)
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", ["sphere", pytest.param("cloth", marks=pytest.mark.slow)])
 def test_what_is_seen_lies_on_the_surface(scene):
     hits = SCENES[scene].hits(SIZE)
     seen = np.asarray(hits.seen)
@@ -105,6 +107,7 @@ def test_what_is_seen_lies_on_the_surface(scene):
     assert np.all((hits.open_sky > 0) & (hits.open_sky <= 1))
 
 
+@pytest.mark.slow
 def test_without_a_layer_the_sphere_is_lambertian():
     """Density 0: base (E_sun max(u·n, 0) + E_sky)/π, whatever the tables."""
     settings = Settings(density=0.0, size=SIZE, fibers="even")
@@ -120,6 +123,7 @@ def test_without_a_layer_the_sphere_is_lambertian():
     np.testing.assert_allclose(rendered, expected, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_tables_are_hard_to_tell_from_exact_functions():
     settings = Settings(size=SIZE)
     exact = image("sphere", settings, "exact")
@@ -173,6 +177,7 @@ def test_bad_settings_are_refused_by_name(tmp_path, change):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_the_command_writes_both_files(tmp_path, capsys):
     arguments = ["render", "sphere", "--size", str(SIZE), "--out", str(tmp_path), "--json"]
     with pytest.raises(SystemExit) as stopped:

@@ -1,0 +1,130 @@
+"""The ambient model: its errors where the answer is known, and its energy."""
+
+import functools
+import json
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from integrals.hemisphere import base_response, layer_response
+from shadefit.ambient import (
+    RULE,
+    deferred_in_uniform_light,
+    energy,
+    errors,
+    lights,
+    points,
+    radiances,
+)
+from shadefit.cli import main
+from shadefit.render_functions import functions
+from shading import deferred_radiance, direction, radiance
+from tests.batches import batched
+
+# What RULE promises of radiances in light of mean radiance of order one.
+ACCURACY = 1e-4
+
+
+@functools.cache
+def few(*names):
+    """Evaluate an isotropic and a sharp material, three views each."""
+    views = [(0.0, 0.0), (1.0, np.pi / 4), (1.4, np.pi)]
+    materials = [(1.0, 0.4, 0.2), (0.3, 0.4, 0.2)]
+    return radiances(np.array([[*m, *v] for m in materials for v in views]), names)
+
+
+def test_lights_are_the_lobes_that_they_are_said_to_be():
+    ways = np.random.default_rng(0).normal(size=(200, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    axes = {"from above": 2, "where fibres point": 0, "from the side": 1}
+    every = lights()
+    for name, axis in axes.items():
+        values = jax.vmap(radiance, (None, 0))(every[name], ways)
+        np.testing.assert_allclose(values, ((1 + ways[:, axis]) / 2) ** 2, atol=1e-13)
+    uniform = jax.vmap(radiance, (None, 0))(every["uniform"], ways)
+    np.testing.assert_allclose(uniform, 1, rtol=1e-13)
+
+
+@pytest.mark.slow
+def test_the_model_is_exact_for_isotropic_fibres_in_uniform_light():
+    found = few()
+    column = found.lights.index("uniform")
+    for part in ("layer", "base"):
+        model, exact = found.models["exact"][part], found.exact[part]
+        np.testing.assert_allclose(model[:3, column], exact[:3, column], atol=ACCURACY)
+
+
+@pytest.mark.slow
+def test_the_model_errs_for_sharp_fibres_far_more_than_its_tables():
+    rows = {(row["part"], row["light"]): row for row in errors(few())}
+    row = rows["layer", "against fibres"]
+    assert row["rms"]["exact"] > 0.1
+    assert abs(row["rms"]["published"] - row["rms"]["exact"]) < 0.3 * row["rms"]["exact"]
+    assert rows["base", "uniform"]["rms"]["exact"] < 0.02
+
+
+def test_errors_are_those_of_the_radiances():
+    found = few("published")
+    (row,) = (r for r in errors(found) if r["part"] == "layer" and r["light"] == "uniform")
+    exact, model = (p["layer"][:, 0] for p in (found.exact, found.models["published"]))
+    expected = np.sqrt(np.mean((model - exact) ** 2)) / exact.mean()
+    np.testing.assert_allclose(row["rms"]["published"], expected, rtol=1e-12)
+    assert set(row["where"]) == {"spread", "tilt", "density", "cos_v", "azimuth"}
+
+
+@pytest.mark.slow
+def test_no_view_gains_in_uniform_light_but_for_tables_at_their_edge():
+    rows = energy(few("published"))
+    assert all(row["largest"] < 1 for row in rows)
+    # Published P_s falls to −0.04: at one grazing view the model's layer exceeds the light.
+    chosen = functions("published")
+    alpha, theta_f, density, cos_v, phi = 0.1672, 0.3841, 0.4494, 0.01254, 2.93
+    sine = np.sqrt(1 - cos_v**2)
+    cos_vt = sine * np.cos(phi) * np.sin(theta_f) + cos_v * np.cos(theta_f)
+    cosines = (jnp.asarray(x) for x in (cos_v, cos_vt, np.cos(theta_f)))
+    down = chosen.ps(*cosines, alpha, theta_f)
+    assert down < 0
+    assert 1 < chosen.g(density, cos_v) * (1 - down) < 1.02
+
+
+@pytest.mark.slow
+def test_the_deferred_version_is_linear_in_albedo_and_gains_when_it_is_high():
+    low, high = deferred_in_uniform_light(0.1, 0.1), deferred_in_uniform_light(0.6, 0.1)
+    np.testing.assert_allclose(high, 6 * low, rtol=1e-12)
+    assert high > 1
+    # The same integral by uniform random directions of light.
+    rng = np.random.default_rng(1)
+    cosine, phi = rng.uniform(-0.2, 1, 100_000), rng.uniform(0, 2 * np.pi, 100_000)
+    sine = np.sqrt(1 - cosine**2)
+    ways = np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=1)
+    view = direction(np.arccos(0.1), 0.0)
+    seen = jax.jit(jax.vmap(lambda u: deferred_radiance(u, view, 0.1, 1.0)))(ways)
+    mean, error = seen.mean(), seen.std() / np.sqrt(len(seen))
+    assert abs(2 * np.pi * 1.2 * mean - low) < 5 * 2 * np.pi * 1.2 * error
+
+
+@pytest.mark.slow
+def test_the_rule_is_as_good_as_it_says():
+    at = points()[::7]
+    coarse = batched(functools.partial(layer_response, **RULE), 16)(*at.T)
+    fine = batched(functools.partial(layer_response, step=1 / 16, azimuths=256), 16)(*at.T)
+    assert np.abs(coarse - fine).max() < ACCURACY
+    bases = [
+        batched(functools.partial(base_response, **rule), 16)(*at[::5, :3].T)
+        for rule in (RULE, {"step": 1 / 16, "azimuths": 256})
+    ]
+    for coarse, fine in zip(*bases, strict=True):
+        assert np.abs(coarse - fine).max() < ACCURACY
+
+
+@pytest.mark.slow
+def test_the_command_prints_what_it_measured(tmp_path, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(["ambient", "--out", str(tmp_path), "--json"])
+    assert stopped.value.code == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["points"] == len(points())
+    assert len(record["errors"]) == 2 * len(lights())
+    assert (tmp_path / "ambient.png").stat().st_size > 10_000
