@@ -1,6 +1,6 @@
 # Compilers and runners of exported code. What does not install is named in one line and left out:
 # code that it would have run is then reported as not checked, and the next call tries it again.
-.PHONY: toolchains toolchain-osl lock-toolchains
+.PHONY: toolchains toolchain-osl toolchain-mitsuba lock-toolchains
 
 TOOLCHAINS := requirements-toolchains.lock
 # command:package of Debian, then its libraries that have no command
@@ -50,8 +50,14 @@ toolchains: .venv/.toolchains  ## install compilers and runners of exported code
 
 toolchain-osl: .venv/.toolchain-osl  ## install Blender's OSL compiler and renderer (1 GB)
 
+.venv/.toolchain-mitsuba: .venv/.ready requirements-mitsuba.lock
+	@if $(PIP_TOOLCHAIN) -r requirements-mitsuba.lock; then touch $@; \
+	else echo "toolchains: left out: mitsuba did not install from the package index" >&2; fi
+
+toolchain-mitsuba: .venv/.toolchain-mitsuba  ## install Mitsuba 3, a judge of the phase function (0.2 GB)
+
 lock-toolchains: setup  ## resolve the locked toolchains anew
-	for name in toolchains osl; do \
+	for name in toolchains osl mitsuba; do \
 	    .venv/bin/uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
 	        --no-emit-index-url --no-emit-find-links --python-version 3.11 --no-deps \
 	        -c requirements.lock requirements-$$name.in -o requirements-$$name.lock || exit 1; \
