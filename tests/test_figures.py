@@ -15,7 +15,7 @@ from coefficients.compare import compare
 from fitting import form_values
 from integrals import PS
 from shadefit.cli import main
-from shadefit.figures import PICTURES, render, run
+from shadefit.figures import PICTURES, frontier, render, run
 from shadefit.figures.frontier import Mark, best_so_far, marks
 from shadefit.figures.materials import EXCHANGED, PRINTED, TABLES, ps_errors, ps_rows
 from shadefit.figures.style import COLOURS, DASHES, MARKERS
@@ -107,6 +107,22 @@ def test_the_frontier_is_what_nothing_beats():
         )
         assert (mark in best) == (not beaten)
     assert [m.operations for m in best] == sorted({m.operations for m in best})
+
+
+def test_labels_of_the_frontier_do_not_cover_each_other(monkeypatch):
+    costs = np.sort(rng.integers(10, 90, 14))
+    errors = 0.1 * np.exp(-np.sort(6 * rng.random(14)))
+    crowd = tuple(
+        Mark(f"best/form-{i}", "best", int(cost), float(error), 0.0)
+        for i, (cost, error) in enumerate(zip(costs, errors, strict=True))
+    )
+    monkeypatch.setattr(frontier, "marks", lambda quantity: crowd)
+    figure = frontier.draw_frontier()
+    figure.draw_without_rendering()
+    panel = figure.axes[0]
+    boxes = [text.get_window_extent() for text in panel.texts]
+    assert len(boxes) >= 5
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
 def test_rows_show_the_exchange():

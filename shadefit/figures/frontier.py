@@ -32,6 +32,9 @@ _KINDS = {
 }
 # The published table is a frame: a refit in the same place is seen inside it.
 _SIZES = {"exact": 110, "published": 90}
+_Box = tuple[float, float, float, float]
+# The width of a letter of a label, in points.
+_LETTER = 4.3
 _COUNTED = {"ps": "operations a direction"}
 
 
@@ -65,8 +68,13 @@ def draw_frontier() -> Figure:
             label=label,
         )
         for kind, label in _KINDS.items()
+        if any(mark.kind == kind for quantity in drawn for mark in marks(quantity))
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    # Labels look for room: first everything else has to be in its place.
+    figure.draw_without_rendering()
+    for axes, quantity in zip(panels, drawn, strict=False):
+        _label(axes, marks(quantity), figure.dpi / 72)
     return figure
 
 
@@ -137,8 +145,6 @@ def _panel(axes: Axes, quantity: str, every: tuple[Mark, ...]) -> None:
             marker=MARKERS[mark.kind],
             zorder=3,
         )
-        if mark in best and mark.kind not in ("published", "exact"):
-            _label(axes, mark)
     integral = INTEGRALS[quantity]
     errors = np.log10([mark.largest for mark in every])
     axes.set(yscale="log", xscale="log", title=f"${integral.symbol}$")
@@ -149,14 +155,39 @@ def _panel(axes: Axes, quantity: str, every: tuple[Mark, ...]) -> None:
     axes.set_axisbelow(True)
 
 
-def _label(axes: Axes, mark: Mark) -> None:
-    axes.annotate(
-        mark.name.removeprefix("best/"),
-        (mark.operations, mark.largest),
-        xytext=(6, 4),
-        textcoords="offset points",
-        fontsize=7.5,
-    )
+def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
+    """Name the frontier's other forms, each where there is room; `dots` are those of a point."""
+    places = [(mark.operations, mark.largest) for mark in every]
+    spots = (axes.transData.transform(places) / dots).tolist()
+    taken = [_box(*spot, 8.0, 8.0, -4.0, -4.0) for spot in spots]
+    for mark in best_so_far(every):
+        if mark.kind != "best":
+            continue
+        x, y = spots[every.index(mark)]
+        text = mark.name.removeprefix("best/")
+        for right, up in ((True, True), (False, False), (True, False), (False, True)):
+            width = _LETTER * len(text)
+            box = _box(x, y, width, 9.0, 6.0 if right else -6.0 - width, 2.0 if up else -11.0)
+            if any(_overlap(box, other) for other in taken):
+                continue
+            taken.append(box)
+            axes.annotate(
+                text,
+                (mark.operations, mark.largest),
+                xytext=(6 if right else -6, 4 if up else -9),
+                textcoords="offset points",
+                ha="left" if right else "right",
+                fontsize=7.5,
+            )
+            break
+
+
+def _box(x: float, y: float, width: float, height: float, right: float, up: float) -> _Box:
+    return (x + right, y + up, x + right + width, y + up + height)
+
+
+def _overlap(one: _Box, other: _Box) -> bool:
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 
 
 def _exact_g() -> Function:
