@@ -81,7 +81,8 @@ def _figure(name: str, png: bytes) -> str:
     source = f"data:image/png;base64,{b64encode(png).decode()}"
     return (
         f'<figure id="figure-{name}">\n<h3>{markup(picture.title)}</h3>\n'
-        f'<img src="{source}" alt="{escape(picture.caption)}" width="{_width(png)}">\n'
+        f'<div class="scroll" tabindex="0" role="group" aria-label="{escape(picture.title)}">'
+        f'<img src="{source}" alt="{escape(picture.caption)}" width="{_width(png)}"></div>\n'
         f"<figcaption>{markup(picture.caption)}</figcaption>\n</figure>"
     )
 
