@@ -259,7 +259,7 @@ def _render(
     scenes: Annotated[
         list[str] | None, typer.Argument(help="sphere, cloth; by default both.", metavar="SCENES")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("build/render"),
     density: Annotated[float, typer.Option(help="Density of the layer, 0 to 0.5.")] = 0.2,
     spread: Annotated[float, typer.Option(help="Spread of the lobe, (0, 1].")] = 0.2,
     tilt: Annotated[

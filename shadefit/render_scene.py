@@ -14,9 +14,9 @@ import numpy as np
 from jax import Array
 
 # Rays that march over the cloth: steps to it, halvings of the last step, steps towards the sun.
-_STEPS, _HALVINGS, _SHADOW_STEPS = 96, 12, 32
+_STEPS, _HALVINGS, _SHADOW_STEPS = 80, 12, 24
 # Directions and steps in which the cloth's horizon is looked for.
-_AZIMUTHS, _HORIZON_STEPS = 8, 12
+_AZIMUTHS, _HORIZON_STEPS = 8, 8
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,10 @@ def cloth_height(x: Array, y: Array) -> Array:
 @functools.cache
 def _cloth_hits(size: int) -> Hits:
     eye, rays = camera(size, (0, -4.2, 4.4), (0, 0, 0.1), 2.9)
-    position = np.asarray(_march(jnp.asarray(eye), jnp.asarray(rays)))
+    position = np.array(_march(_single(eye), _single(rays)), float)
+    position[:, 2] = cloth_height(jnp.asarray(position[:, 0]), jnp.asarray(position[:, 1]))
     normal = np.asarray(_cloth_normal(jnp.asarray(position)))
-    open_sky = np.asarray(_open_sky(jnp.asarray(position), jnp.asarray(normal)))
+    open_sky = np.asarray(_open_sky(_single(position), _single(normal)), float)
     uv = (position[:, :2] / 4 + 0.5) % 1
     return Hits(np.ones(len(rays), bool), position, normal, _comb(normal), -rays, uv, open_sky)
 
@@ -122,7 +123,7 @@ def _march(eye: Array, rays: Array) -> Array:
         return jnp.where(above(distance + step), distance + step, distance)
 
     def halve(i, distance):
-        forward = distance + step / 2.0 ** (i + 1)
+        forward = distance + step * 0.5 ** (i + 1).astype(step.dtype)
         return jnp.where(above(forward), forward, distance)
 
     distance = jax.lax.fori_loop(0, _STEPS, advance, near)
@@ -132,19 +133,24 @@ def _march(eye: Array, rays: Array) -> Array:
 
 def _cloth_sunlit(position: np.ndarray, sun: np.ndarray) -> np.ndarray:
     """Give the part of a sun some degrees wide that the cloth leaves visible, (n,)."""
-    return np.asarray(_visible_sun(jnp.asarray(position), jnp.asarray(sun)))
+    return np.asarray(_visible_sun(_single(position), _single(sun)), float)
+
+
+def _single(values: np.ndarray) -> Array:
+    """Give values in float32: marches over the cloth need no more, and take half the time."""
+    return jnp.asarray(values, jnp.float32)
 
 
 @jax.jit
 def _visible_sun(position: Array, sun: Array) -> Array:
 
     def clearance(i, least):
-        distance = 0.02 + 1.6 * ((i + 1) / _SHADOW_STEPS) ** 1.5
+        distance = 0.02 + 1.6 * ((i + 1).astype(position.dtype) / _SHADOW_STEPS) ** 1.5
         p = position + distance * sun
         room = (p[:, 2] - cloth_height(p[:, 0], p[:, 1])) / distance
         return jnp.minimum(least, room)
 
-    room = jax.lax.fori_loop(0, _SHADOW_STEPS, clearance, jnp.full(len(position), 1.0))
+    room = jax.lax.fori_loop(0, _SHADOW_STEPS, clearance, jnp.ones_like(position[:, 0]))
     lit = jnp.clip(room / 0.12 + 0.5, 0, 1)
     return lit * lit * (3 - 2 * lit)
 
@@ -154,11 +160,11 @@ def _open_sky(position: Array, normal: Array) -> Array:
     """Estimate the part of the sky's cosine-weighted light that the cloth itself leaves open."""
 
     def hidden(k, total):
-        azimuth = (k + 0.5) * 2 * jnp.pi / _AZIMUTHS
+        azimuth = (k.astype(position.dtype) + 0.5) * (2 * jnp.pi / _AZIMUTHS)
         ahead = jnp.stack([jnp.cos(azimuth), jnp.sin(azimuth)])
 
         def rise(i, steepest):
-            distance = 0.03 + 1.4 * ((i + 1) / _HORIZON_STEPS) ** 2
+            distance = 0.03 + 1.4 * ((i + 1).astype(position.dtype) / _HORIZON_STEPS) ** 2
             there = position[:, :2] + distance * ahead
             height = cloth_height(there[:, 0], there[:, 1]) - position[:, 2]
             return jnp.maximum(steepest, height / distance)
@@ -168,7 +174,7 @@ def _open_sky(position: Array, normal: Array) -> Array:
         slope = jax.lax.fori_loop(0, _HORIZON_STEPS, rise, plane)
         return total + jnp.sin(jnp.arctan(slope)) - jnp.sin(jnp.arctan(plane))
 
-    total = jax.lax.fori_loop(0, _AZIMUTHS, hidden, jnp.zeros(len(position)))
+    total = jax.lax.fori_loop(0, _AZIMUTHS, hidden, jnp.zeros_like(position[:, 0]))
     return jnp.clip(1 - total / _AZIMUTHS, 0.05, 1)
 
 

@@ -68,6 +68,14 @@ def render(
     return np.where(hits.seen[:, None], shaded, BACKDROP)
 
 
+def tabulated(values: Array, cos_v: Array) -> Array:
+    """Interpolate between values at `_ROOTS`², linearly in √(v·n)."""
+    at = (jnp.sqrt(cos_v) - _ROOTS[0]) / (_ROOTS[1] - _ROOTS[0])
+    below = jnp.clip(jnp.floor(at), 0, len(_ROOTS) - 2).astype(int)
+    share = at - below
+    return (1 - share) * values[below] + share * values[below + 1]
+
+
 def _in_batches(function: Callable, columns: tuple) -> np.ndarray:
     """Apply a vectorised function to batches of one size, so that it is compiled once."""
     count = len(columns[0])
@@ -123,13 +131,17 @@ def _point(chosen, sky, normal, comb, view, open_sky, azimuth, lit, material, li
     phase = fiber_normal_distribution(cos_ht, alpha)
     phase = phase / (4 * fiber_projected_area(sun @ fiber, alpha))
     layer = layer_brdf(phase, cos_u, cos_v, material.density, fiber_albedo)
-    down = chosen.ps(cos_u, sun @ fiber, cos_nt, alpha, material.tilt)
+    # Both at once, because a second copy of P_s takes as long again to compile.
+    fraction = jax.vmap(chosen.ps, (0, 0, None, None, None))
+    along = jnp.stack([sun @ fiber, view @ fiber])
+    down, scattered = fraction(
+        jnp.stack([cos_u, cos_v]), along, cos_nt, alpha, jnp.asarray(material.tilt)
+    )
     base = base_attenuation(cos_u, cos_v, material.density, fiber_albedo, down) * base_albedo
     direct = (layer + base / jnp.pi) * jnp.where(above > 0, cos_u, 0.0) * light.sun * lit
 
-    scattered = chosen.ps(cos_v, view @ fiber, cos_nt, alpha, material.tilt)
     mean, received = mean_radiance(sky, normal), irradiance(sky, normal)
-    glow = ambient_layer(mean, fiber_albedo, jnp.interp(jnp.sqrt(cos_v), _ROOTS, g), scattered)
+    glow = ambient_layer(mean, fiber_albedo, tabulated(g, cos_v), scattered)
     shadow = ambient_attenuation(cos_v, material.density, fiber_albedo, q, r)
     ambient = ambient_radiance(glow, shadow, base_albedo, received) * light.sky * open_sky
     return direct * jnp.asarray(SUN) + ambient
