@@ -16,7 +16,7 @@ COS_V = (0.001, 1.0)
 def draw_g() -> Figure:
     """Draw G over d and v·n: exact, published, refitted."""
     points = mesh(np.linspace(*DENSITY, 61), np.linspace(*COS_V, 61))
-    return surfaces(G, points, ("density $d$", "$v·n$", "$G$"), (0, 1), azimuth=50)
+    return surfaces(G, points, ("density $d$", "$v·n$", "$G$"), (0.0, 1.0), azimuth=50.0)
 
 
 def draw_g_errors() -> Figure:

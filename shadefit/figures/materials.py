@@ -29,13 +29,13 @@ EXCHANGED = (3, 4)
 def draw_r() -> Figure:
     """Draw R over θf and α: exact, published, refitted."""
     labels = ("α", "$θ_f$ / rad", "$R$")
-    return surfaces(R, _materials(41), labels, (0, 1), azimuth=-40)
+    return surfaces(R, _materials(41), labels, (0.0, 1.0), azimuth=-40.0)
 
 
 def draw_r_errors() -> Figure:
     """Map R and the signed errors of its tables over α and θf."""
     labels = ("α", "fibre's angle $θ_f$ / °")
-    return error_maps(R, _materials(61), labels, 1e-3, units=(1, 180 / np.pi))
+    return error_maps(R, _materials(61), labels, 1e-3, units=(1.0, 180 / np.pi))
 
 
 def draw_ps_errors(count: int = 49, directions: int = 16) -> Figure:

@@ -59,7 +59,7 @@ def draw_discs() -> Figure:
         truth = exact(PS, points)
         fitted = [exported(table, points) for table in _ROWS.values() if table is not None]
         for each, image in zip(axes[:3], [truth, *fitted], strict=True):
-            values = _disc(each, image, VALUES, 0, 1)
+            values = _disc(each, image, VALUES, 0.0, 1.0)
         for each, image in zip(axes[3:], fitted, strict=True):
             errors = _disc(each, image - truth, ERRORS, -_ERROR, _ERROR)
         axes[0].set_ylabel(f"α = {alpha:g}, $θ_f$ = {tilt:g}°")
