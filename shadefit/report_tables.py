@@ -33,7 +33,7 @@ def summary(chosen: Sequence[str]) -> str:
     )
     rows = [row for quantity in chosen for row in _group(quantity)]
     return (
-        '<div class="scroll" tabindex="0" role="region" aria-labelledby="summary-title">\n'
+        '<div class="scroll" tabindex="0" role="group" aria-label="All tables">\n'
         f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n" + "\n".join(rows) + "\n</tbody>\n"
         "</table>\n</div>\n"
         '<p class="note">Operations: of the exported functions, once for a material and then for '
