@@ -69,6 +69,25 @@ def layer_response(
     return weights @ jax.vmap(scattered)(lights)
 
 
+def phase_over_lights(
+    alpha: Scalar,
+    theta_f: Scalar,
+    theta_v: Scalar,
+    phi_v: Scalar,
+    step: float = STEP,
+    azimuths: int = AZIMUTHS,
+) -> Array:
+    """Give ∫_Ω p_F(u, v) dω_u, for which the ambient model takes 1 − P_s(v) = ∫_Ω p_F(v, u) dω_u.
+
+    They differ because p_F(u, v) σ_F(u) is symmetric and p_F is not.
+    """
+    require_float64()
+    lights, weights = hemisphere_rule(step, azimuths)
+    fiber, view = fiber_direction(theta_f), direction(theta_v, phi_v)
+    phase = jax.vmap(fiber_phase_function, (0, None, None, None))
+    return weights @ phase(lights, view, fiber, alpha)
+
+
 def base_response(
     alpha: Scalar, theta_f: Scalar, density: Scalar, step: float = STEP, azimuths: int = AZIMUTHS
 ) -> tuple[Array, Array]:

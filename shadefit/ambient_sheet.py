@@ -8,7 +8,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize, PowerNorm
 from matplotlib.figure import Figure
 
-from shadefit.ambient import Radiances, radiances
+from shadefit.ambient_errors import Radiances, radiances
 from shadefit.figures.style import ERRORS, FIBRE, VALUES, render
 from shading import roughness_from_spread
 
