@@ -11,6 +11,7 @@ from coefficients.table import Table
 from integrals import INTEGRALS
 from programs.trace import trace
 from shadefit.figures.frontier import Mark, marks
+from shadefit.figures.style import KINDS
 
 _COLUMNS = (
     "table",
@@ -47,7 +48,8 @@ def _group(quantity: str) -> list[str]:
     integral = INTEGRALS[quantity]
     span = len(_COLUMNS)
     title = f"{integral.symbol} = {integral.definition}, {integral.meaning}"
-    every = marks(quantity)
+    order = list(KINDS)
+    every = sorted(marks(quantity), key=lambda mark: (order.index(mark.kind), mark.operations))
     base = next(mark for mark in every if mark.name == f"published/{quantity}")
     head = f'<tr class="group"><th colspan="{span}" scope="colgroup">{markup(title)}</th></tr>'
     return [head, *(_row(mark, base, quantity) for mark in every)]

@@ -19,17 +19,10 @@ from integrals.q import average_penetration
 from programs.function import Function, Parameter
 from programs.program import evaluate
 from programs.trace import trace
-from shadefit.figures.style import COLOURS, MARKERS
+from shadefit.figures.style import COLOURS, KINDS, MARKERS
 from shadefit.figures.values import kind_of, quantities, tables_of
 
 _DENSITY, _COS_V = Parameter("density", (0.0, 0.5)), Parameter("NdotV", (0.001, 1.0))
-_KINDS = {
-    "printed": "published, as printed",
-    "published": "published",
-    "refitted": "refitted, same form",
-    "best": "other forms",
-    "exact": "closed form, in float32",
-}
 # The published table is a frame: a refit in the same place is seen inside it.
 _SIZES = {"exact": 110, "published": 90}
 _Box = tuple[float, float, float, float]
@@ -67,7 +60,7 @@ def draw_frontier() -> Figure:
             linestyle="",
             label=label,
         )
-        for kind, label in _KINDS.items()
+        for kind, label in KINDS.items()
         if any(mark.kind == kind for quantity in drawn for mark in marks(quantity))
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
@@ -150,6 +143,7 @@ def _panel(axes: Axes, quantity: str, every: tuple[Mark, ...]) -> None:
     axes.set(yscale="log", xscale="log", title=f"${integral.symbol}$")
     axes.set(xlabel=_COUNTED.get(quantity, "operations"), ylabel="largest error")
     axes.set_ylim(10 ** np.floor(errors.min() - 0.3), 10 ** np.ceil(errors.max() + 0.3))
+    axes.margins(x=0.1)
     axes.tick_params(labelbottom=True)
     axes.grid(color="#e5e5e5", lw=0.6)
     axes.set_axisbelow(True)

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from integrals import G, Q
 from shadefit.figures.maps import error_maps, surfaces
-from shadefit.figures.style import COLOURS, DASHES
+from shadefit.figures.style import COLOURS, DASHES, KINDS
 from shadefit.figures.values import exact, exported, kind_of, mesh, tables_of
 
 # The domain that the published tables were fitted on, and down to which the listings may be used.
@@ -37,12 +37,20 @@ def draw_q() -> Figure:
     drawn: set[str] = set()
     for name in tables_of("q"):
         kind = kind_of(name)
-        style = {"color": COLOURS[kind], "linestyle": DASHES[kind]}
-        label = None if kind in drawn else kind
+        label = None if kind in drawn else KINDS[kind]
         drawn.add(kind)
         values = exported(name, points)
-        above.plot(density, values, label=label, **style)
-        below.plot(density, values - truth, **style)
+        for axes, line in ((above, values), (below, values - truth)):
+            axes.plot(
+                density,
+                line,
+                label=label,
+                color=COLOURS[kind],
+                linestyle=DASHES[kind],
+                # Of other forms there may be many: thin, and below the two that are compared.
+                linewidth=0.9 if kind == "best" else 1.6,
+                zorder=1 if kind == "best" else 2,
+            )
     above.set(ylabel="$Q$, mean penetration", ylim=(0, 1.03))
     above.legend()
     below.set(xlabel="density $d$", ylabel="table − exact", xlim=(0, DENSITY[1]))

@@ -33,7 +33,15 @@ _STYLE: dict[Any, Any] = {
     "ytick.labelsize": 8,
 }
 
-# By what a table is: colours of Okabe and Ito, a dash pattern and a marker, so that no two are told
+# What a table is, in words; what follows is by the same names.
+KINDS = {
+    "printed": "published, as printed",
+    "published": "published",
+    "refitted": "refitted, same form",
+    "best": "other forms",
+    "exact": "closed form, in float32",
+}
+# Colours of Okabe and Ito, a dash pattern and a marker, so that no two are told
 # apart by colour alone.
 COLOURS = {
     "exact": "#000000",
