@@ -93,6 +93,7 @@ def test_the_model_errs_for_sharp_fibres_far_more_than_its_tables():
     assert rows["base", "uniform"]["rms"]["exact"] < 0.02
 
 
+@pytest.mark.slow
 def test_errors_are_those_of_the_radiances():
     found = few("published")
     (row,) = (r for r in errors(found) if r["part"] == "layer" and r["light"] == "uniform")
