@@ -92,8 +92,13 @@ def run(scenes: list[str], settings: Settings, out: Path, sweep: bool, as_json: 
         from shadefit.render_sweep import draw_sweep  # noqa: PLC0415
 
         path = out / "sweep.png"
+        if len(scenes) > 1:
+            raise ValueError(f"scenes are {', '.join(scenes)}; allowed with --sweep: one")
         write_whole_bytes(path, draw_sweep(scenes[0] if scenes else "cloth", settings))
-        print(path)
+        if as_json:
+            print_json({"files": [str(path)]})
+        else:
+            print(path)
         return
     with stages() as progress:
         task = progress.add_task("")

@@ -12,8 +12,6 @@ from fitting import Form
 from integrals import PS, G, Q, R
 from integrals.ps import scattered_fraction
 
-FOLDERS = {"published": "published/", "refitted": "", "best": "best/"}
-
 
 @dataclass(frozen=True)
 class Functions:
@@ -25,15 +23,29 @@ class Functions:
     r: Callable[..., Array]
 
 
-@functools.cache
+SETS = ("published", "refitted", "best")
+
+
 def table_sets() -> tuple[str, ...]:
-    """Name the sets of tables that are there: all four quantities of each."""
-    known = set(names())
-    return tuple(
-        name
-        for name, folder in FOLDERS.items()
-        if all(folder + x.name in known for x in (PS, G, Q, R))
-    )
+    """Name the sets that have a table of each quantity."""
+    return tuple(name for name in SETS if all(table_of(name, x.name) for x in (PS, G, Q, R)))
+
+
+@functools.cache
+def table_of(name: str, quantity: str) -> str | None:
+    """Name a set's table of a quantity; None if there is none.
+
+    'best' is of all forms that are not the paper's the one with the least rms error.
+    """
+    if name != "best":
+        found = f"published/{quantity}" if name == "published" else quantity
+        return found if found in names() else None
+    errors = {
+        each: table.errors.off_grid.rms
+        for each, table in ((each, load(each)) for each in names() if each.startswith("best/"))
+        if table.quantity == quantity and table.errors is not None
+    }
+    return min(errors, key=errors.__getitem__, default=None)
 
 
 def functions(name: str) -> Functions:
@@ -44,7 +56,7 @@ def functions(name: str) -> Functions:
     if name == "exact":
         exact_ps = lambda c, a, b, alpha, _: scattered_fraction(c, a, b, alpha)  # noqa: E731
         return Functions(exact_ps, G.value, Q.value, R.value)
-    ps, g, q, r = (clamped(form_of(load(FOLDERS[name] + x.name))) for x in (PS, G, Q, R))
+    ps, g, q, r = (clamped(form_of(load(str(table_of(name, x.name))))) for x in (PS, G, Q, R))
     return Functions(lambda c, a, b, *m: ps(*m, *_angles(c, a, b)), g, q, r)
 
 
