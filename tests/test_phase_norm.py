@@ -13,7 +13,10 @@ from fitting.certificate import certify_denominators
 from fitting.grid import trapezoid_grid
 from fitting.norm import MARGIN, ConservativeNorm, certify_conservative, fit_conservative_norm
 from integrals import NORM
-from integrals.norm import scattered_energy, series_coefficients
+from integrals.norm import normalisation, scattered_energy, series_coefficients
+from programs.function import Function, Parameter
+from programs.program import evaluate
+from programs.trace import trace
 from tests.batches import batched
 from tests.differences import difference
 
@@ -170,6 +173,13 @@ def test_a_fit_that_creates_energy_is_not_certified():
         lower = form.coefficients.at[coefficient].add(-below)
         wrong = eqx.tree_at(lambda form: form.coefficients, form, lower)
         assert not certify_conservative(wrong).holds
+
+
+def test_the_exact_factor_can_be_written_as_shader_code():
+    parameters = (Parameter("k", (-DOMAIN_END, 0.0)),)
+    program = trace(Function("Exact", "r.", parameters, None, "value", normalisation))
+    k = np.append(-DOMAIN_END * np.random.default_rng(5).random(1000), [0.0, -0.25])
+    np.testing.assert_allclose(np.ravel(evaluate(program, k[:, None])), VALUE(k), rtol=64 * EPS)
 
 
 def test_the_form_is_differentiable_on_its_closed_domain():
