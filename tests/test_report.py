@@ -12,7 +12,7 @@ from coefficients.table import Table
 from shadefit import report, report_tables
 from shadefit.cli import main
 from shadefit.figures import PICTURES
-from shadefit.figures.frontier import marks
+from shadefit.figures.frontier import Mark
 from shadefit.figures.values import quantities
 
 
@@ -87,15 +87,23 @@ def test_pictures_have_their_captions_and_widths():
     assert f"<figcaption>{caption}</figcaption>" in figure
 
 
-def test_the_summary_says_what_was_measured():
+def test_the_summary_says_what_was_measured(monkeypatch):
+    measured = (
+        Mark("published/q", "published", 5, 0.02, 0.01),
+        Mark("q", "refitted", 5, 0.03, 0.004),
+        Mark("closed form", "exact", 700, 2.5e-7, 3.5e-8),
+    )
+    monkeypatch.setattr(report_tables, "marks", lambda quantity: measured)
     cells = Outline(report_tables.summary(["q"])).cells
     text = " | ".join(cells)
-    for mark in marks("q"):
+    for mark in measured:
         assert f"{mark.rms:.3e}" in text
         assert f"{mark.largest:.3e}" in text
     assert "Q = (1/π) ∫Ω exp(−d/(u·n))" in text
     row = cells.index("q")
-    assert cells[row + 1 : row + 4] == ["Eq. (4)", "2", "5"]
+    assert cells[row + 1 : row + 8] == [
+        *("Eq. (4)", "2", "5", "4.000e-03", "0.4", "3.000e-02", "1.5"),
+    ]
     assert cells[row + 8] == "no denominator"
 
 
