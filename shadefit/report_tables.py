@@ -22,8 +22,9 @@ _COLUMNS = (
     "ratio",
     "largest error",
     "ratio",
-    "denominators proven ≥",
+    "proven of denominators",
 )
+_NORMS = {"l2": "rms", "linf": "largest"}
 _TEXT = ' class="text"'
 
 
@@ -39,8 +40,9 @@ def summary(chosen: Sequence[str]) -> str:
         "</table>\n</div>\n"
         '<p class="note">Operations: of the exported functions, once for a material and then for '
         "each direction where there are two. The closed form has the error of float32, in which it "
-        "is evaluated. A certificate holds on the whole domain, between the nodes too; polynomials "
-        "need none.</p>"
+        "is evaluated. What is proven of denominators holds on the whole domain, between the "
+        "nodes too; polynomials have none. Behind it, where it is known, stands what the form's "
+        "largest error cannot fall below.</p>"
     )
 
 
@@ -88,8 +90,12 @@ def _operations(mark: Mark, quantity: str) -> str:
 def _certificate(table: Table | None) -> str:
     if table is None or table.certificates is None:
         return "—"
-    bound = table.certificates.denominator_bound
-    return "no denominator" if bound is None else f"{bound:.3g}, {table.certificates.boxes} boxes"
+    recorded = table.certificates.model_dump(exclude_none=True)
+    bound, boxes = recorded.get("denominator_bound"), recorded["boxes"]
+    denominators = "no denominator" if bound is None else f"≥ {bound:.3g} in {boxes} boxes"
+    # Known of fits that make the largest error small.
+    least = recorded.get("least_error")
+    return denominators if least is None else f"{denominators}; error ≥ {least:.3g}"
 
 
 def errata() -> str:
@@ -128,10 +134,16 @@ def _origin(table: Table) -> dict[str, str | None]:
         appendix = f"appendix {table.publication.appendix}, {table.publication.listing}"
         return {"source": table.publication.source, "printed in": appendix}
     entries: dict[str, str | None] = {}
+    recorded = table.model_dump(exclude_none=True)
     if table.grid is not None:
         nodes = [f"{n.count} {n.spacing} nodes of {n.argument}" for n in table.grid.nodes]
-        lights = f"; {table.grid.directions} lights each" if table.grid.directions else ""
-        entries["fitted on"] = ", ".join(nodes) + lights
+        if table.grid.directions:
+            nodes.append(f"{table.grid.directions} lights each")
+        if "points" in recorded["grid"]:
+            nodes.append(f"{recorded['grid']['points']} scattered points")
+        entries["fitted on"] = ", ".join(nodes)
+    if "goal" in recorded:
+        entries["made small"] = _goal(recorded["goal"])
     if table.weight is not None:
         entries["weight"] = table.weight
     if table.reference is not None:
@@ -143,6 +155,15 @@ def _origin(table: Table) -> dict[str, str | None]:
         versions = [f"{name} {version}" for name, version in table.provenance.versions.items()]
         entries["versions"] = ", ".join(versions)
     return entries
+
+
+def _goal(goal: dict) -> str:
+    words = [f"the {_NORMS[goal['norm']]} {'relative' if goal['relative'] else 'absolute'} error"]
+    if goal["side"] != "both":
+        words.append(f"staying {goal['side']} the exact values")
+    if goal["rounding"] != "none":
+        words.append(f"coefficients rounded to {goal['rounding']}")
+    return ", ".join(words)
 
 
 def _list(entries: dict[str, str | None]) -> str:

@@ -111,7 +111,7 @@ def test_a_certificate_is_what_the_table_records():
     table = load("g")
     assert table.certificates is not None
     bound = table.certificates.denominator_bound
-    assert report_tables._certificate(table).startswith(f"{bound:.3g}, ")
+    assert report_tables._certificate(table).startswith(f"≥ {bound:.3g} in ")
     assert report_tables._certificate(load("published/g")) == "—"
     assert report_tables._certificate(None) == "—"
 
