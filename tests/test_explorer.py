@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from coefficients.catalogue import form_of, load
+from coefficients.printer import write
 from coefficients.toolchains.registry import toolchain
 from integrals import INTEGRALS
 from shadefit import explorer, report
-from shadefit.figures.values import quantities, tables_of
+from shadefit.figures.values import kind_of, quantities, tables_of
 
 # What the page's eight decimals, and R's rule, may cost.
 SHOWN = 1e-6
@@ -31,6 +32,22 @@ FLAGS = [
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
+
+
+def some_tables(quantity):
+    """List the tables that the page is tested with: of other forms one, as each takes its time."""
+    every = tables_of(quantity)
+    best = [name for name in every if kind_of(name) == "best"]
+    return [name for name in every if name not in best[:-1]]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_tables():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(explorer, "tables_of", some_tables)
+        explorer.exported.cache_clear()
+        yield
+    explorer.exported.cache_clear()
 
 
 def radians(quantity):
@@ -59,6 +76,7 @@ def test_exported_functions_give_pythons_values():
     missing = javascript.missing("double")
     if missing is not None:
         pytest.skip(missing)
+    functions = explorer.functions()
     for identifier, quantity, name in (
         ("exactPs", "ps", "exact"),
         ("exactG", "g", "exact"),
@@ -67,13 +85,31 @@ def test_exported_functions_give_pythons_values():
     ):
         expected = in_python(quantity, name)
         inside = np.array([value is not None for value in expected])
-        function, rows = explorer.functions()[identifier], radians(quantity)[inside]
+        function, rows = functions[identifier], radians(quantity)[inside]
         values = javascript.run(explorer.exported(), function, rows, "double")
         wanted = [value for value in expected if value is not None]
         np.testing.assert_allclose(np.ravel(values), wanted, rtol=0, atol=1e-12)
 
 
-def test_every_table_has_a_function_of_its_own():
+@pytest.mark.slow
+@pytest.mark.parametrize("quantity", PLACES)
+def test_every_tables_function_gives_pythons_values(quantity):
+    javascript = toolchain("javascript")
+    missing = javascript.missing("double")
+    if missing is not None:
+        pytest.skip(missing)
+    for name in tables_of(quantity):
+        function = explorer._of_table(name)
+        expected = in_python(quantity, name)
+        inside = np.array([value is not None for value in expected])
+        source = write(function, "javascript", "double")
+        values = javascript.run(source, function, radians(quantity)[inside], "double")
+        wanted = [value for value in expected if value is not None]
+        np.testing.assert_allclose(np.ravel(values), wanted, rtol=0, atol=1e-12)
+
+
+def test_every_table_has_a_function_of_its_own(monkeypatch):
+    monkeypatch.setattr(explorer, "tables_of", tables_of)
     every = [name for quantity in quantities() for name in tables_of(quantity)]
     made = [explorer.identifier(name) for name in every]
     assert len(set(made)) == len(every)
@@ -163,7 +199,7 @@ def test_the_numbers_shown_are_pythons(page):
         for index, place in enumerate(places):
             enter(page, quantity, place)
             shown = values(page)
-            assert set(shown) == {"exact", *tables_of(quantity)}
+            assert set(shown) == {"exact", *some_tables(quantity)}
             for name, (value, error) in shown.items():
                 expected = in_python(quantity, name)[index]
                 if expected is None:

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from coefficients.catalogue import AS_PRINTED, names
+from coefficients.catalogue import AS_PRINTED, load, names
 from coefficients.shaders import Shader, shader
 from fitting import exact_values
 from integrals import INTEGRALS, Integral
@@ -30,7 +30,7 @@ def tables_of(quantity: str) -> list[str]:
 @lru_cache(maxsize=256)
 def of_quantity(name: str) -> str:
     """Name the quantity that a table is of."""
-    return _loaded(name).integral.name
+    return load(name).quantity
 
 
 def kind_of(name: str) -> str:
