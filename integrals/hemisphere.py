@@ -7,6 +7,7 @@ Light enters through its nine spherical harmonics: each result is linear in them
 import functools
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
@@ -85,7 +86,7 @@ def phase_over_lights(
     lights, weights = hemisphere_rule(step, azimuths)
     fiber, view = fiber_direction(theta_f), direction(theta_v, phi_v)
     phase = jax.vmap(fiber_phase_function, (0, None, None, None))
-    return weights @ phase(lights, view, fiber, alpha)
+    return jnp.sum(weights * phase(lights, view, fiber, alpha))
 
 
 def base_response(
