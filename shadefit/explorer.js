@@ -3,9 +3,11 @@
 const WAIT = 500; // milliseconds without a change before the values are read out
 const DISC_ERROR = 0.1; // where the colours of the errors end
 const DASHES = {
-    exact: "none", published: "7 4", printed: "7 3 2 3", refitted: "2.5 3", best: "11 3 3 3",
+    exact: "none", published: "7 4", printed: "7 3 2 3", refitted: "2.5 3",
 };
+// Of other forms there may be many: every colour with every dash.
 const BEST = ["--best-0", "--best-1", "--best-2", "--best-3"];
+const BEST_DASHES = ["11 3 3 3", "9 3 2 3 2 3", "14 4", "4 4 1 4"];
 
 // The tables that are drawn.
 const shown = new Set(known.quantities.flatMap((quantity) =>
@@ -16,9 +18,11 @@ const degrees = (angle) => (angle * 180) / Math.PI;
 
 function styleOf(table) {
     const { kind, name } = table;
-    const best = current.tables.filter((each) => each.kind === "best").map((each) => each.name);
-    const variable = kind === "best" ? BEST[best.indexOf(name) % BEST.length] : `--${kind}`;
-    return `stroke: var(${variable}); stroke-dasharray: ${DASHES[kind]}`;
+    if (kind !== "best") return `stroke: var(--${kind}); stroke-dasharray: ${DASHES[kind]}`;
+    const index = current.tables.filter((each) => each.kind === "best")
+        .findIndex((each) => each.name === name);
+    const dash = BEST_DASHES[Math.floor(index / BEST.length) % BEST_DASHES.length];
+    return `stroke: var(${BEST[index % BEST.length]}); stroke-dasharray: ${dash}`;
 }
 
 // A column to choose what is drawn, a swatch of its line, its value, and how far off it is.

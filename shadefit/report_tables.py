@@ -69,7 +69,7 @@ def _row(mark: Mark, base: Mark, quantity: str) -> str:
         f"{mark.largest / base.largest:.3g}",
         _certificate(table),
     ]
-    first = f"<td{_TEXT}>{escape(cells[0])}</td>"
+    first = f"<td{_TEXT}>{markup(cells[0])}</td>"
     rest = "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:])
     return f'<tr><th scope="row">{escape(mark.name)}</th>{first}{rest}</tr>'
 
@@ -92,7 +92,7 @@ def _certificate(table: Table | None) -> str:
         return "—"
     recorded = table.certificates.model_dump(exclude_none=True)
     bound, boxes = recorded.get("denominator_bound"), recorded["boxes"]
-    denominators = "no denominator" if bound is None else f"≥ {bound:.3g} in {boxes} boxes"
+    denominators = "no denominator" if bound is None else f"≥ {bound:.3g} in {boxes:,} boxes"
     # Known of fits that make the largest error small.
     least = recorded.get("least_error")
     return denominators if least is None else f"{denominators}; error ≥ {least:.3g}"
