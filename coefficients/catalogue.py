@@ -3,6 +3,7 @@
 import json
 import os
 import platform
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
@@ -11,6 +12,9 @@ import numpy as np
 
 from coefficients.table import SCHEMA, Table, parse, read
 from fitting import PAPER_FORMS, Fit, Form
+from fitting.families import FAMILIES, form_class
+from fitting.goal import LEAST_SQUARES
+from fitting.samples import Sample
 from integrals import INTEGRALS
 
 FOLDER = Path(__file__).parent
@@ -23,11 +27,17 @@ _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
 def names() -> list[str]:
     """List the names that `load` knows, published tables last."""
     refitted = [path.stem for path in sorted((FOLDER / "refit").glob("*.json"))]
+    best = names_of_best()
     published = [f"published/{path.stem}" for path in sorted((FOLDER / "published").glob("*.json"))]
     printed = [
         name + AS_PRINTED for name in published if load(name) != load(name + AS_PRINTED)
     ]  # fmt: skip
-    return [*refitted, *published, *printed]
+    return [*refitted, *best, *published, *printed]
+
+
+def names_of_best() -> list[str]:
+    """List the tables of forms that are not the paper's: 'best/q-8', …."""
+    return [f"best/{path.stem}" for path in sorted((FOLDER / "best").glob("*.json"))]
 
 
 def load(name: str) -> Table:
@@ -38,6 +48,8 @@ def load(name: str) -> Table:
     """
     stem, printed, rest = name.partition(AS_PRINTED)
     folder, _, quantity = stem.rpartition("/")
+    if rest == "" and folder == "best" and not printed and stem in names_of_best():
+        return read(FOLDER / f"{stem}.json")
     if rest == "" and folder in ("", "refit", "published") and quantity in QUANTITIES:
         table = read(FOLDER / (folder or "refit") / f"{quantity}.json")
         if not printed:
@@ -47,7 +59,8 @@ def load(name: str) -> Table:
     # os.path, unlike Path, takes a name that is too long for one that does not exist.
     if name.endswith(".json") or os.path.isfile(name):
         return corrected(read(Path(name)))
-    allowed = ", ".join((*QUANTITIES, *(f"published/{q}" for q in QUANTITIES)))
+    known = (*QUANTITIES, *(f"published/{q}" for q in QUANTITIES), *names_of_best())
+    allowed = ", ".join(known)
     raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
 
 
@@ -71,10 +84,13 @@ def form_of(table: Table) -> Form:
     Its axes are the form's, not the table's `arguments`. Raises ValueError for a form that is not
     known, one of another quantity, and coefficients that are not in its shape.
     """
-    if table.form not in PAPER_FORMS:
-        allowed = ", ".join(PAPER_FORMS)
+    if table.shape is None and table.form in PAPER_FORMS:
+        form = PAPER_FORMS[table.form]
+    elif table.shape is None and table.form not in FAMILIES:
+        allowed = ", ".join((*PAPER_FORMS, *FAMILIES))
         raise ValueError(f"form {table.form!r} of {table.name} is not known: allowed are {allowed}")
-    form = PAPER_FORMS[table.form]
+    else:
+        form = form_class(table.form, table.shape or {})
     if form.integral.name != table.quantity:
         raise ValueError(
             f"form {table.form!r} is one of {form.integral.name}, not {table.quantity}"
@@ -89,32 +105,28 @@ def form_of(table: Table) -> Form:
     return form(jnp.asarray(coefficients))
 
 
-def from_fit(fit: Fit, command: str) -> Table:
-    """Write down a fit as a table; `command` is what made it."""
+def from_fit(fit: Fit, command: str, name: str | None = None) -> Table:
+    """Write down a fit as a table, by the quantity's name or another; `command` is what made it."""
     form = type(fit.form)
-    axes = fit.grid.axes
     record = {
         "schema": SCHEMA,
-        "name": form.integral.name,
+        "name": name or form.integral.name,
         "quantity": form.integral.name,
         "form": form.name,
+        **({"shape": form.shape} if form.shape is not None else {}),
         "equation": form.equation,
         "arguments": [_argument(axis) for axis in form.axes],
         "coefficients": np.asarray(fit.form.coefficients).tolist(),
         "coefficient_names": form.coefficient_names(),
-        "grid": {
-            "nodes": [
-                {"argument": axis.name, "count": len(nodes), "spacing": fit.grid.spacing}
-                for axis, nodes in zip(axes, fit.grid.nodes, strict=True)
-            ],
-            "directions": fit.directions,
-        },
+        "grid": _grid(fit),
         "weight": fit.weight,
+        **({"goal": asdict(fit.goal)} if fit.goal != LEAST_SQUARES else {}),
         "reference": {"leg": form.integral.reference, "error": fit.reference_error},
         "errors": {"on_grid": _errors(fit.on_grid), "off_grid": _errors(fit.off_grid)},
         "certificates": {
             "denominator_bound": _finite(fit.certificate.bound),
             "boxes": fit.certificate.boxes,
+            **({} if fit.lower_bound is None else {"least_error": fit.lower_bound}),
         },
         "provenance": {
             "command": command,
@@ -126,6 +138,16 @@ def from_fit(fit: Fit, command: str) -> Table:
         },
     }
     return parse(json.dumps(record), f"the fit of {form.integral.name}")
+
+
+def _grid(fit: Fit) -> dict:
+    if isinstance(fit.grid, Sample):
+        return {"nodes": [], "directions": 0, "points": len(fit.grid.points)}
+    nodes = [
+        {"argument": axis.name, "count": len(nodes), "spacing": fit.grid.spacing}
+        for axis, nodes in zip(fit.grid.axes, fit.grid.nodes, strict=True)
+    ]
+    return {"nodes": nodes, "directions": fit.directions}
 
 
 def _argument(axis) -> dict:

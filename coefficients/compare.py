@@ -6,7 +6,7 @@ import numpy as np
 
 from coefficients.catalogue import form_of
 from coefficients.table import Table
-from fitting import Errors, Form, form_values, measure, off_grid_reference
+from fitting import Errors, Form, form_values, judge, measure, off_grid_reference
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,9 @@ def compare(labelled: list[tuple[str, Table]]) -> Comparison:
     if len(quantities) != 1:
         raise ValueError(f"tables of different quantities: {', '.join(sorted(quantities))}")
     forms: list[Form] = [form_of(table) for _, table in labelled]
-    points, exact = off_grid_reference(type(forms[0]))
+    points, _ = off_grid_reference(type(forms[0]))
     values = [form_values(form, points) for form in forms]
-    errors = [measure(v - exact, points, type(forms[0])) for v in values]
+    errors = [judge(form, type(forms[0])) for form in forms]
     entries = tuple(
         Entry(label, table, e, e.rms / errors[0].rms, e.largest / errors[0].largest)
         for (label, table), e in zip(labelled, errors, strict=True)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -57,7 +58,9 @@ def functions_of(table: Table, name: str | None = None) -> tuple[Function, ...]:
     ValueError for a form that is not known and a name that is no identifier.
     """
     form = form_of(table)
-    build = _BUILDERS.get(table.form, _plain)
+    build = _BUILDERS.get(
+        table.form, _plain if table.shape is None else _OF_FAMILIES[table.quantity]
+    )
     functions = build(type(form), np.asarray(table.coefficients, np.float64))
     return functions if name is None else _renamed(functions, name)
 
@@ -128,9 +131,9 @@ def shader(name: str, precision: str = "float", function_name: str | None = None
         integral,
         type(form).axes,
         functions_of(table, function_name),
-        _COLUMNS.get(table.form, _all_columns),
+        _COLUMNS.get(table.quantity, _all_columns),
         form,
-        _REMARKS.get(table.form),
+        _REMARKS.get(table.quantity),
     )
 
 
@@ -180,13 +183,56 @@ def _of_ps(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
     )
 
 
+def _of_material(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
+    """Export a form of P_s in its two parts; the material's numbers are the form's own."""
+    alpha_axis, theta_axis = form.axes[:2]
+    low, high = float(alpha_axis.lower), float(alpha_axis.upper)
+    fitted = _with(form, coefficients)
+    alphas, thetas = np.meshgrid(np.linspace(low, high, 33), np.linspace(0, _HALF_PI, 33))
+    sampled = jax.jit(jax.vmap(lambda a, t: jnp.stack(fitted.material(a, t))))
+    largest = float(np.max(np.abs(sampled(alphas.ravel(), thetas.ravel()))))
+
+    def material(alpha, theta_f):
+        theta_f = _clamp(theta_f, 0.0, _HALF_PI)
+        alpha = _clamp(alpha, low, high)
+        return tuple(_with(form, coefficients).material(alpha, theta_f))
+
+    def value(c, cos_un, cos_ut):
+        return _with(form, coefficients).along(c, cos_un, cos_ut)
+
+    count = len(fitted.material(low, 0.0))
+    return (
+        function(
+            "CalcFuzzPsCoeffs",
+            (
+                Parameter("alpha", (low, high)),
+                Parameter("thetaF", (float(theta_axis.lower), _HALF_PI), "rad"),
+            ),
+            material,
+            "What FuzzPs needs to know of one material; clamps to the domain.",
+            count,
+            "c",
+        ),
+        function(
+            "FuzzPs",
+            (
+                Parameter("c", (-largest, largest), size=count),
+                Parameter("NdotU", _COSINE),
+                Parameter("TdotU", (-1.0, 1.0)),
+            ),
+            value,
+            "P_s for one direction of light.",
+        ),
+    )
+
+
 def _of_g(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
     def value(cos_v, density):
         density = _clamp(density, None, 0.5)
         return _with(form, coefficients)(density, cos_v)
 
     parameters = (Parameter("NdotV", (0.001, 1.0)), Parameter("density", (0.001, 0.5)))
-    summary = "G (Eq. 3); clamps density from above."
+    summary = f"G ({_printed(form)}); clamps density from above."
     return (function("FuzzGApprox", parameters, value, summary),)
 
 
@@ -195,21 +241,28 @@ def _of_q(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
         density = _clamp(density, None, 0.5)
         return _with(form, coefficients)(density)
 
-    summary = "Q (Eq. 4); clamps density from above."
+    summary = f"Q ({_printed(form)}); clamps density from above."
     name = "FuzzAveragePenetration"
     return (function(name, (Parameter("density", (0.0, 0.5)),), value, summary),)
 
 
 def _of_r(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
+    low = float(form.axes[0].lower)
+
     def value(alpha, theta_f):
         theta_f = _clamp(theta_f, 0.0, _HALF_PI)
-        alpha = _clamp(alpha, 0.15, 1.0)
+        alpha = _clamp(alpha, low, 1.0)
         _name_terms(alpha, theta_f)
         return _with(form, coefficients)(alpha, theta_f)
 
-    parameters = (Parameter("alpha", (0.15, 1.0)), Parameter("thetaF", (0.0, _HALF_PI), "rad"))
-    summary = "R (Eq. 5); clamps to the domain."
+    parameters = (Parameter("alpha", (low, 1.0)), Parameter("thetaF", (0.0, _HALF_PI), "rad"))
+    summary = f"R ({_printed(form)}); clamps to the domain."
     return (function("FuzzAveragePs", parameters, value, summary),)
+
+
+def _printed(form: type[Form]) -> str:
+    """Give the equation that the paper prints a form by, or the form's name."""
+    return form.equation.replace("Eq. (", "Eq. ").rstrip(")") if form.shape is None else form.name
 
 
 def _plain(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
@@ -267,12 +320,14 @@ _BUILDERS = {
     "quadratic-q": _of_q,
     "rational-r": _of_r,
 }
+# Forms of the families are called as the paper's are: code that calls one may call the other.
+_OF_FAMILIES = {"ps": _of_material, "g": _of_g, "q": _of_q, "r": _of_r}
 # How the functions are called at points of the form's axes, where their order differs.
-_COLUMNS = {"rational-ps": _ps_columns, "rational-g": lambda points: (points[:, ::-1],)}
+_COLUMNS = {"ps": _ps_columns, "g": lambda points: (points[:, ::-1],)}
 _REMARKS = {
-    "rational-ps": "alpha is the projected area along the fibre, thetaF its polar angle, "
+    "ps": "alpha is the projected area along the fibre, thetaF its polar angle, "
     "NdotU = u·n and TdotU = u·t of the light's direction u",
-    "rational-g": "NdotV = v·n of the view's direction v; density = NdotV = 0 is 0/0",
-    "quadratic-q": "density is thickness over mean free path",
-    "rational-r": "alpha is the projected area along the fibre, thetaF its polar angle",
+    "g": "NdotV = v·n of the view's direction v; density = NdotV = 0 is 0/0",
+    "q": "density is thickness over mean free path",
+    "r": "alpha is the projected area along the fibre, thetaF its polar angle",
 }

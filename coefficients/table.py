@@ -15,9 +15,12 @@ MAX_BYTES = 4 << 20
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Text = Annotated[str, Field(max_length=2000)]
-Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]{0,63}$")]
-Vector = Annotated[list[Number], Field(min_length=1, max_length=4096)]
-Labels = Annotated[list[Text], Field(min_length=1, max_length=4096)]
+Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$")]
+Vector = Annotated[list[Number], Field(max_length=4096)]
+Labels = Annotated[list[Text], Field(max_length=4096)]
+Pair = Annotated[list[int], Field(min_length=2, max_length=2)]
+# What tells the members of a family of forms apart: checked by fitting/families.
+Shape = dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]]
 
 
 class _Part(BaseModel):
@@ -47,10 +50,23 @@ class Nodes(_Part):
 
 
 class GridRecord(_Part):
-    """The fitting grid: nodes along each argument, and lights at each node (0: none)."""
+    """The fitting grid: nodes along each argument, and lights at each node (0: none).
+
+    A form that is fitted on scattered points has no nodes, but a number of `points`.
+    """
 
     nodes: list[Nodes]
     directions: Annotated[int, Field(ge=0)] = 0
+    points: Annotated[int, Field(ge=1)] | None = None
+
+
+class GoalRecord(_Part):
+    """What the fit made small: see fitting/goal.py."""
+
+    norm: Literal["l2", "linf"]
+    relative: bool
+    side: Literal["both", "below", "above"]
+    rounding: Literal["none", "float32", "float16"]
 
 
 class Reference(_Part):
@@ -77,10 +93,14 @@ class ErrorRecords(_Part):
 
 
 class Certificates(_Part):
-    """Proven on the whole domain: a lower bound of every denominator (None: there is none)."""
+    """Proven on the whole domain: a lower bound of every denominator (None: there is none).
+
+    No coefficients of the form have a largest error below `least_error`, where it is known.
+    """
 
     denominator_bound: Number | None = None
     boxes: Annotated[int, Field(ge=0)]
+    least_error: Annotated[Number, Field(ge=0)] | None = None
 
 
 class Provenance(_Part):
@@ -123,12 +143,14 @@ class Table(_Part):
     name: Name
     quantity: Literal["ps", "g", "q", "r"]
     form: Name
+    shape: Shape | None = None
     equation: Text
     arguments: Annotated[list[Argument], Field(min_length=1, max_length=8)]
     coefficients: Vector | Annotated[list[Vector], Field(min_length=1, max_length=64)]
     coefficient_names: Labels | Annotated[list[Labels], Field(min_length=1, max_length=64)]
     grid: GridRecord | None = None
     weight: Literal["uniform", "solid-angle", "cosine"] | None = None
+    goal: GoalRecord | None = None
     reference: Reference | None = None
     errors: ErrorRecords | None = None
     certificates: Certificates | None = None

@@ -7,6 +7,7 @@ import numpy as np
 
 from fitting.form import Form
 from fitting.interval import enclose
+from integrals import Axis
 from programs.function import Function, Parameter
 from programs.program import Program, evaluate, is_value
 from programs.trace import trace
@@ -34,22 +35,37 @@ class Certificate:
         return self.bound > 0
 
 
-def certify_denominators(form: Form) -> Certificate:
-    """Bound every divisor in a form's expression from below, over the form's whole domain."""
-    program = divisors(as_program(form))
-    if not program.outputs:
+def certify_denominators(form: Form, enough: float = np.inf) -> Certificate:
+    """Bound every divisor in a form's expression from below, over the form's whole domain.
+
+    A bound of `enough` is not improved upon.
+    """
+    relaxed = form.relaxed()
+    if relaxed is not None:
+        found = _bound_divisors(*_traced(form, *relaxed), enough)
+        if found.holds:
+            return found
+    return _bound_divisors(as_program(form), form.axes, enough)
+
+
+def _bound_divisors(program: Program, axes: tuple[Axis, ...], enough: float) -> Certificate:
+    found = divisors(program)
+    if not found.outputs:
         return Certificate(np.inf, 0)
-    lower = np.array([axis.lower for axis in form.axes])
-    upper = np.array([axis.upper for axis in form.axes])
-    return bound_below(program, lower, upper)
+    lower = np.array([axis.lower for axis in axes])
+    upper = np.array([axis.upper for axis in axes])
+    return bound_below(found, lower, upper, enough)
 
 
 def as_program(form: Form) -> Program:
     """Trace a form, its coefficients constants, as a function of its axes."""
-    parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in form.axes)
-    frozen = type(form)(np.asarray(form.coefficients))
+    return _traced(form, type(form)(np.asarray(form.coefficients)), form.axes)[0]
+
+
+def _traced(form: Form, call, axes: tuple[Axis, ...]) -> tuple[Program, tuple[Axis, ...]]:
+    parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
     summary = f"{form.integral.symbol} by {form.equation}"
-    return trace(Function(form.integral.name, summary, parameters, None, "value", frozen))
+    return trace(Function(form.integral.name, summary, parameters, None, "value", call)), axes
 
 
 def divisors(program: Program) -> Program:
@@ -62,11 +78,13 @@ def divisors(program: Program) -> Program:
     return replace(program, outputs=tuple(sorted(found)))
 
 
-def bound_below(program: Program, lower: np.ndarray, upper: np.ndarray) -> Certificate:
+def bound_below(
+    program: Program, lower: np.ndarray, upper: np.ndarray, enough: float = np.inf
+) -> Certificate:
     """Bound all outputs of a program from below on the box [lower, upper], by branch and bound.
 
-    The bound is within `TIGHTNESS` of the least output that is attained, if that is positive and
-    boxes within the limits on their number and size show it; else it is −∞.
+    The bound is within `TIGHTNESS` of the least output that is attained, or at least `enough`, if
+    that is positive and boxes within the limits on their number and size show it; else it is −∞.
     """
     low, high = lower[None], upper[None]
     # An input that the outputs do not depend on is never split.
@@ -83,7 +101,7 @@ def bound_below(program: Program, lower: np.ndarray, upper: np.ndarray) -> Certi
         if not attained > 0 or boxes > MAX_BOXES or smallest < SMALLEST_BOX:
             return Certificate(-np.inf, boxes)
         bounds = np.min([each.lower for each in enclose(program, low, high)], axis=0)
-        done = bounds >= TIGHTNESS * attained
+        done = bounds >= min(TIGHTNESS * attained, enough)
         proven = min(proven, bounds[done].min(initial=np.inf))
         low, high = _halved(low[~done], high[~done], scale)
     return Certificate(float(proven), boxes)

@@ -9,13 +9,16 @@ import numpy as np
 
 from fitting.form import Form
 from fitting.grid import off_grid_points
+from fitting.spread import spread_points
 from integrals import INTEGRALS, Estimate, Integral
 
 # log₂ of the size of the off-grid set: R, which has no closed form, is dear.
 OFF_GRID_EXPONENT = {"ps": 17, "g": 16, "q": 16, "r": 12}
 OFF_GRID_SEED = 20200717
-# 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py).
-LEG_OPTIONS = {"r": {"nodes": 32}}
+# log₂ of the number of points that the boundary's are half as many as.
+CHECK_EXPONENT = {"ps": 15, "g": 15, "q": 13, "r": 10}
+# 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py); 96² for lower α.
+R_NODES, R_NODES_LOW_ALPHA, R_ALPHA = 32, 96, 0.15
 # Points that are evaluated at once.
 CHUNK = 8192
 CHUNK_OF_R = 64
@@ -38,8 +41,10 @@ def exact_values(integral: Integral, points: np.ndarray) -> np.ndarray:
 
 def exact_estimates(integral: Integral, points: np.ndarray) -> Estimate:
     """Evaluate the same with the error that the leg states, both (n,)."""
-    chunk = CHUNK_OF_R if integral.name == "r" else CHUNK
-    return _in_chunks(functools.partial(_estimates, integral.name), points, chunk)
+    if integral.name != "r":
+        return _in_chunks(functools.partial(_estimates, integral.name), points, CHUNK)
+    nodes = R_NODES if np.min(points[:, 0]) >= R_ALPHA else R_NODES_LOW_ALPHA
+    return _in_chunks(functools.partial(_estimates, "r", nodes=nodes), points, CHUNK_OF_R)
 
 
 def form_values(form: Form, points: np.ndarray) -> np.ndarray:
@@ -56,9 +61,22 @@ def measure(difference: np.ndarray, points: np.ndarray, form: type[Form], weight
 
 
 def off_grid_errors(form: Form) -> Errors:
-    """Measure a form on scrambled Sobol' points of its domain, which no fit sees."""
-    points, exact = off_grid_reference(type(form))
-    return measure(form_values(form, points) - exact, points, type(form))
+    """Measure a form on points that no fit sees: see `judge`."""
+    return judge(form, type(form))
+
+
+def judge(form: Form, domain: type[Form]) -> Errors:
+    """Measure a form on the domain of another (or its own).
+
+    The rms error is over scrambled Sobol' points. The largest is over these and over points on
+    faces, edges and corners of the domain, and where the integral is steep.
+    """
+    points, exact = off_grid_reference(domain)
+    inside = measure(form_values(form, points) - exact, points, domain)
+    points, exact = check_reference(domain, OFF_GRID_SEED)
+    outside = measure(form_values(form, points) - exact, points, domain)
+    worst = max(inside, outside, key=lambda each: each.largest)
+    return Errors(inside.rms, worst.largest, worst.where, inside.points)
 
 
 @functools.lru_cache(maxsize=16)
@@ -76,11 +94,19 @@ def _in_chunks(function, points: np.ndarray, chunk: int):
     return jax.tree.map(lambda *each: jnp.asarray(np.concatenate(each)[:count]), *parts)
 
 
-@functools.partial(jax.jit, static_argnums=0)
-def _estimates(name: str, points) -> Estimate:
+@functools.lru_cache(maxsize=16)
+def check_reference(form: type[Form], seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Give points (n, axes) all over a form's domain, its boundary included, and exact values."""
+    name = form.integral.name
+    points = spread_points(name, form.axes, CHECK_EXPONENT[name], seed)
+    return points, exact_values(form.integral, points)
+
+
+@functools.partial(jax.jit, static_argnums=0, static_argnames="nodes")
+def _estimates(name: str, points, **options) -> Estimate:
     integral = INTEGRALS[name]
     leg = integral.legs[integral.reference]
-    return jax.vmap(lambda x: leg(*x, **LEG_OPTIONS.get(name, {})))(points)
+    return jax.vmap(lambda x: leg(*x, **options))(points)
 
 
 @jax.jit

@@ -11,9 +11,11 @@ from fitting.cells import DIRECTIONS_PER_ANGLE, fit_cells, largest_error
 from fitting.certificate import Certificate, certify_denominators
 from fitting.errors import Errors, exact_estimates, form_values, measure, off_grid_errors
 from fitting.form import Form
+from fitting.goal import LEAST_SQUARES, Goal
 from fitting.grid import WEIGHTS, Grid, Weight, gauss_grid, trapezoid_grid
 from fitting.paper import QuadraticQ, RationalG, RationalPs, RationalR
 from fitting.rational import fit_quadratic_q, fit_rational_g, fit_rational_ps, fit_rational_r
+from fitting.samples import Sample
 
 Progress = Callable[[str], None]
 
@@ -22,11 +24,12 @@ Progress = Callable[[str], None]
 class Fit:
     """A form with its coefficients, where and how it was made, and how good it is.
 
-    `directions` is the number of lights a node (0 where the integral has none).
+    `directions` is the number of lights a node (0 where the integral has none). No coefficients of
+    the form have a largest error below `lower_bound`, where one is known.
     """
 
     form: Form
-    grid: Grid
+    grid: Grid | Sample
     weight: Weight
     directions: int
     solver: str
@@ -34,6 +37,8 @@ class Fit:
     on_grid: Errors
     off_grid: Errors
     certificate: Certificate
+    goal: Goal = LEAST_SQUARES
+    lower_bound: float | None = None
 
 
 def refit(name: str, count: int, weight: Weight, progress: Progress = lambda _: None) -> Fit:

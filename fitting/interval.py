@@ -177,8 +177,9 @@ def _hull_of(a: Enclosure, b: Enclosure) -> Enclosure:
 
 
 def _max(a: Enclosure, b: Enclosure) -> Enclosure:
+    # A lower bound of one is a lower bound of the larger, even if nothing is known of the other.
     value = Interval(
-        np.maximum(a.value.lower, b.value.lower), np.maximum(a.value.upper, b.value.upper)
+        np.fmax(a.value.lower, b.value.lower), np.maximum(a.value.upper, b.value.upper)
     )
     return Enclosure(value, _hull(a.gradient, b.gradient))
 

@@ -53,6 +53,10 @@ class RationalPs(Form):
         offset = jnp.array([0.5, 0, 0, 0, 0, 0])
         return offset + beta * numerator / denominator
 
+    def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+        """Give the least of the six denominators."""
+        return jnp.min(1 + self.coefficients[:, 14:] @ terms(alpha, theta_f))
+
     def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Evaluate P̃_s at one material and one direction of light."""
         cos_un = jnp.cos(theta_u)
@@ -83,6 +87,13 @@ class RationalG(Form):
         return d * (1 + nu * (c[0] + nu * c[1])) / (d + nu * (c[2] + nu * nu * c[3]))
 
     @classmethod
+    def linear_parts(cls, density: Scalar, cos_v: Scalar) -> tuple[Array, Array, Array, Array]:
+        """Give a₀, a, b₀, b with G̃ = (a₀ + a·c)/(b₀ + b·c) at one point."""
+        d, nu, none = jnp.asarray(density), jnp.asarray(cos_v), jnp.zeros(())
+        above = jnp.stack([d * nu, d * nu * nu, none, none])
+        return d, above, d, jnp.stack([none, none, nu, nu**3])
+
+    @classmethod
     def coefficient_names(cls) -> list:
         """Name the coefficients by the term that each multiplies."""
         return ["c0: dν", "c1: dν²", "c2: ν", "c3: ν³"]
@@ -102,6 +113,12 @@ class QuadraticQ(Form):
         return 1 + d * (c[0] + d * c[1])
 
     @classmethod
+    def linear_parts(cls, density: Scalar) -> tuple[Array, Array, Array, Array]:
+        """Give a₀, a, b₀, b with Q̃ = (a₀ + a·c)/(b₀ + b·c) at one point."""
+        d, one = jnp.asarray(density), jnp.ones(())
+        return one, jnp.stack([d, d * d]), one, jnp.zeros(2)
+
+    @classmethod
     def coefficient_names(cls) -> list:
         """Name the coefficients by the term that each multiplies."""
         return ["c0: d", "c1: d²"]
@@ -119,6 +136,17 @@ class RationalR(Form):
         """Evaluate R̃ at one material."""
         c, x, beta = self.coefficients, terms(alpha, theta_f), 1 - jnp.asarray(alpha)
         return 0.5 + beta * (c[0] + c[1:14] @ x) / (1 + c[14:] @ x[:3])
+
+    def positive(self, alpha: Scalar, theta_f: Scalar) -> Array:
+        """Give the denominator."""
+        return 1 + terms(alpha, theta_f)[:3] @ jnp.asarray(self.coefficients[14:])
+
+    @classmethod
+    def linear_parts(cls, alpha: Scalar, theta_f: Scalar) -> tuple[Array, Array, Array, Array]:
+        """Give a₀, a, b₀, b with R̃ = (a₀ + a·c)/(b₀ + b·c) at one point."""
+        x, beta, one = terms(alpha, theta_f), 1 - jnp.asarray(alpha), jnp.ones(())
+        above = jnp.concatenate([beta[None], beta * x, 0.5 * x[:3]])
+        return jnp.asarray(0.5), above, one, jnp.concatenate([jnp.zeros(14), x[:3]])
 
     @classmethod
     def coefficient_names(cls) -> list:

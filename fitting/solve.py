@@ -21,13 +21,15 @@ def solve_linear(matrix: Array, values: Array) -> Array:
     return (scale * jax.scipy.linalg.solve_triangular(r, q.T @ values).T).T
 
 
-def solve_nonlinear(residual: Residual, start: Array, steps: int = 300) -> Array:
+def solve_nonlinear(
+    residual: Residual, start: Array, steps: int = 300, rtol: float = 1e-7, atol: float = 1e-9
+) -> Array:
     """Minimise |residual(z)|² from `start` (n,) by Optimistix's Levenberg–Marquardt.
 
-    Stops at a relative change of 1e-7 or after `steps`; judge the result by its residual, not by
-    the solver's word.
+    Stops at a change below `atol` and a relative one below `rtol`, or after `steps`; judge the
+    result by its residual, not by the solver's word.
     """
-    solver = optx.LevenbergMarquardt(rtol=1e-7, atol=1e-9, linear_solver=lx.Normal(lx.Cholesky()))
+    solver = optx.LevenbergMarquardt(rtol=rtol, atol=atol, linear_solver=lx.Normal(lx.Cholesky()))
     solution = optx.least_squares(
         lambda z, _: residual(z), solver, start, max_steps=steps, throw=False
     )

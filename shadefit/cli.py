@@ -7,7 +7,7 @@ import os
 import sys
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -29,7 +29,9 @@ def _complete_quantity(incomplete: str) -> list[str]:
 
 
 def _complete_table(incomplete: str) -> list[str]:
+    best = (Path(__file__).parent.parent / "coefficients" / "best").glob("*.json")
     every = [*_NAMES, *(f"published/{name}" for name in _NAMES)]
+    every += sorted(f"best/{path.stem}" for path in best)
     return [name for name in every if name.startswith(incomplete)]
 
 
@@ -62,24 +64,91 @@ def _global(
     pass
 
 
-@app.command("refit", epilog="Example: shadefit refit r g --out /tmp/tables --grid 33")
+_Norm = Annotated[
+    Literal["l2", "linf"] | None,
+    typer.Option(help="Least squares or least largest error; by default the table's own."),
+]
+_Side = Annotated[
+    Literal["both", "below", "above"] | None,
+    typer.Option(help="With linf, values never above (or below) the exact ones."),
+]
+_Rounding = Annotated[
+    Literal["none", "float32", "float16"] | None,
+    typer.Option(help="Precision that coefficients are rounded to, the others refitted in turn."),
+]
+_Relative = Annotated[bool, typer.Option("--relative", help="Make relative errors small.")]
+
+
+@app.command(
+    "refit",
+    epilog="Examples: shadefit refit r g --out /tmp/tables --grid 33; "
+    "shadefit refit best/q-9; shadefit refit g --norm linf --out /tmp/tables",
+)
 def _refit(
     names: Annotated[
         list[str] | None,
-        typer.Argument(help="ps, g, q, r or all (the default).", autocompletion=_complete_quantity),
+        typer.Argument(
+            help="ps, g, q, r or all (the default); or best/NAME.",
+            autocompletion=_complete_quantity,
+        ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for NAME.json.")] = Path("coefficients/refit"),
-    grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129.")] = 65,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for NAME.json; by default coefficients/refit or …/best."),
+    ] = None,
+    grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129, for the paper's forms.")] = 65,
     weight: Annotated[
         Literal["uniform", "solid-angle", "cosine"],
         typer.Option(help="Measure of light directions in the fit of ps; the others have none."),
     ] = "uniform",
+    norm: _Norm = None,
+    side: _Side = None,
+    rounding: _Rounding = None,
+    relative: _Relative = False,
     json: Json = False,
 ) -> None:
-    """Refit the paper's forms to exact values and write the tables."""
+    """Refit forms to exact values, the paper's or a best table's, and write the tables."""
     from shadefit import refit
 
-    refit.run(names or [], out, grid, weight, json)
+    refit.run(names or [], out, grid, weight, _goal(norm, side, rounding, relative), json)
+
+
+def _goal(norm, side, rounding, relative) -> dict[str, Any]:
+    given = {"norm": norm, "side": side, "rounding": rounding, "relative": relative or None}
+    return {key: value for key, value in given.items() if value is not None}
+
+
+@app.command("search", epilog="Example: shadefit search q --budget 12 --max-error 2e-5")
+def _search(
+    quantity: Annotated[str, typer.Argument(help="ps, g, q or r.", metavar="QUANTITY")],
+    budget: Annotated[
+        int | None, typer.Option(help="Most operations a call (of P_s a direction).")
+    ] = None,
+    max_error: Annotated[
+        float | None, typer.Option(help="Print only forms with no larger error.")
+    ] = None,
+    least_alpha: Annotated[
+        float, typer.Option(help="Lower end of α in the fits of ps and r.")
+    ] = 0.15,
+    norm: _Norm = None,
+    side: _Side = None,
+    rounding: _Rounding = None,
+    relative: _Relative = False,
+    out: Annotated[
+        Path, typer.Option(help="Folder for tables and plot; what is there is not fitted again.")
+    ] = Path("search"),
+    json: Json = False,
+) -> None:
+    """Fit families of forms, and print and plot operations against the largest error.
+
+    By default the largest error is made least, with coefficients in float32.
+    """
+    from fitting import Goal
+    from shadefit import search
+
+    goal: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
+    goal |= _goal(norm, side, rounding, relative)
+    search.run(quantity, budget, max_error, least_alpha, Goal(**goal), out, json)
 
 
 @app.command("compare", epilog="Example: shadefit compare ps my/table.json --json")

@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 
 from coefficients import catalogue
-from coefficients.catalogue import FOLDER, QUANTITIES, corrected, form_of, from_fit, load, names
+from coefficients.catalogue import (
+    FOLDER,
+    QUANTITIES,
+    corrected,
+    form_of,
+    from_fit,
+    load,
+    names,
+    names_of_best,
+)
 from coefficients.table import parse, read, serialise
 from fitting import PAPER_FORMS, Certificate, Errors, Fit, QuadraticQ, RationalG
 from fitting.grid import gauss_grid
@@ -17,12 +26,13 @@ def test_every_name_that_is_listed_loads():
     listed = names()
     assert listed == [
         *("g", "ps", "q", "r"),
+        *names_of_best(),
         *("published/g", "published/ps", "published/q", "published/r"),
         "published/ps@printed",
     ]
     for name in listed:
-        quantity = name.removeprefix("published/").removesuffix("@printed")
-        assert (load(name).name, load(name).quantity) == (quantity, quantity)
+        stem = name.rpartition("/")[2].removesuffix("@printed")
+        assert (load(name).name, load(name).quantity) == (stem, stem.partition("-")[0])
         assert (load(name).publication is not None) == name.startswith("published/")
 
 

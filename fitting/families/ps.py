@@ -1,0 +1,312 @@
+"""Forms of P_s that know the integral: its symmetries, the cubic's root, and where it is ½.
+
+P_s depends on c = u·n, a = u·t, b = n·t and α, and is the same for t and −t. With κ = 1 − α²,
+T = κab, σ² = 1 − κa², q = 1 − κb² and S = σ√q, the closed form (docs/closed-form.md) is that of a
+root λ of λ (λ − S + T)(λ + S + T) = α²c (1 − λ²). Each form has a part that is evaluated once for a
+material, and a short one for each direction of light.
+"""
+
+import functools
+from collections.abc import Callable
+from dataclasses import replace
+from typing import ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.form import Form
+from integrals import PS, Axis
+from shading.types import Scalar
+
+MAX_DEGREE = 4
+# Denominators are larger for all unit vectors u, n and t: this keeps rounding, and cosines that no
+# such vectors have, from dividing by zero.
+LEAST = 1e-6
+
+
+def _axes(least_alpha: float):
+    return (replace(PS.axes[0], lower=least_alpha, open_below=False), *PS.axes[1:])
+
+
+class MaterialForm(Form):
+    """A form of P_s in two steps: a material's numbers, then a direction's value."""
+
+    def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+        """Give what a material's directions share."""
+        raise NotImplementedError
+
+    def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Evaluate P̃_s of a material at u·n and u·t."""
+        raise NotImplementedError
+
+    def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Give what must stay positive for a material at u·n and u·t."""
+        return jnp.ones(())
+
+    def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+        """Evaluate P̃_s at one material and one direction of light."""
+        cosines = _cosines(theta_f, theta_u, phi)
+        return self.along(self.material(alpha, theta_f), *cosines)
+
+    def relaxed(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
+        """Take the two cosines of the light for independent of each other and of the material."""
+        cosines = (
+            Axis("cos_un", "u·n", "1", 0.0, 1.0, "cosine of the light and the normal"),
+            Axis("cos_ut", "u·t", "1", -1.0, 1.0, "cosine of the light and the fibre"),
+        )
+
+        def value(alpha, theta_f, cos_un, cos_ut):
+            return self.along(self.material(alpha, theta_f), cos_un, cos_ut)
+
+        return value, (*self.axes[:2], *cosines)
+
+    def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+        """Give the radicand or denominator that a fit could make negative."""
+        cosines = _cosines(theta_f, theta_u, phi)
+        return self.positive_along(self.material(alpha, theta_f), *cosines)
+
+
+def _cosines(theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> tuple[Array, Array]:
+    cos_un = jnp.cos(theta_u)
+    in_plane = jnp.sin(theta_u) * jnp.cos(phi) * jnp.sin(theta_f)
+    return cos_un, in_plane + cos_un * jnp.cos(theta_f)
+
+
+def _surfaces(coefficients, count: int, degree: int, alpha, y) -> list[Array]:
+    """Give `count` polynomials of total degree `degree` in α and y, their coefficients in a row."""
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    size = len(powers)
+    return [
+        functools.reduce(
+            jnp.add,
+            [
+                coefficients[k * size + n] * alpha**i * y**j if i + j else coefficients[k * size]
+                for n, (i, j) in enumerate(powers)
+            ],
+        )
+        for k in range(count)
+    ]
+
+
+def _names(surfaces: list[str], degree: int) -> list[str]:
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    return [f"{name}: α^{i} y^{j}" for name in surfaces for i, j in powers]
+
+
+def _flat(values: list[float], degree: int, slopes=None) -> np.ndarray:
+    """Give coefficients of constant surfaces, or with `slopes` by α and y where there are some."""
+    start = np.zeros((len(values), (degree + 1) * (degree + 2) // 2))
+    start[:, 0] = values
+    for k, (by_alpha, by_y) in (slopes or {}).items():
+        start[k, [degree + 1, 1]] = by_alpha, by_y
+    return start.ravel()
+
+
+@functools.cache
+def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> type[Form]:
+    """Give ½ plus a linear function of c and a over the root of a quadratic one.
+
+    `skew` = 1 adds the products ca to both. The six functions of the material are polynomials in
+    α and y = cos²θf of a total degree.
+    """
+    surfaces = ["u0", "u1", "u2", "u3", "u4", "u5"][: 6 if skew else 4]
+
+    class OneRootPs(MaterialForm):
+        """P̃_s = ½ + (m₀c + m₁a [+ m₆ca]) / √(m₂ + m₃c + m₄a² [+ m₅ca]); ½ at α = 1."""
+
+        name = "one-root-ps"
+        equation = (
+            f"P_s = 1/2 + (m0 c + m1 a{' + m6 c a' if skew else ''}) / "
+            f"√(m2 + m3 c + m4 a²{' + m5 c a' if skew else ''}), degree {degree}"
+        )
+        integral = PS
+        axes = _axes(least_alpha)
+        shape: ClassVar = {"skew": skew, "degree": degree, "least_alpha": least_alpha}
+
+        def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+            """Give m₀ … m₄, and m₅, m₆ where there are products."""
+            alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
+            y, kappa = b * b, (1 - alpha) * (1 + alpha)
+            u = _surfaces(self.coefficients, len(surfaces), degree, alpha, y)
+            m = (-(1 - alpha) * u[0], kappa * b * u[1], 1 - kappa * y, u[2], u[3])
+            return (*m, b * u[4], (1 - alpha) * b * u[5]) if skew else m
+
+        def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+            """Evaluate P̃_s of a material at u·n and u·t."""
+            c, a = cos_un, cos_ut
+            above = m[0] * c + a * (m[1] + m[6] * c) if skew else m[0] * c + m[1] * a
+            return 0.5 + above / jnp.sqrt(self.positive_along(m, c, a))
+
+        def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+            """Give the radicand."""
+            c, a = cos_un, cos_ut
+            curved = a * (m[4] * a + m[5] * c) if skew else m[4] * a * a
+            return m[2] + m[3] * c + curved
+
+        @classmethod
+        def coefficient_names(cls) -> list:
+            """Name the coefficients by surface and monomial."""
+            return _names(surfaces, degree)
+
+        @classmethod
+        def starts(cls) -> list[np.ndarray]:
+            """Give a start: the coplanar case c = 0, where T/2S is exact, and a light along n."""
+            values = [0.2, 0.5, 0.0, -0.95, 0.0, 0.0][: len(surfaces)]
+            return [_flat(values, degree, {3: (1.0, 1.7)})]
+
+    return OneRootPs
+
+
+@functools.cache
+def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> type[Form]:
+    """Give 1 − t (t + m₃c)/(8 (σR + …)), t = h + R the root of a quadratic about S − T.
+
+    `terms` (3, 4 or 5) is the number of functions of the material, polynomials in α and y = cos²θf
+    of a total degree. Exact at c = 0, and ½ at α = 1.
+    """
+    surfaces = ["u0", "u1", "u2", "u3", "u4"][:terms]
+
+    def _parts(m, c, a):
+        sigma = jnp.sqrt(1 - m[0] * a * a)
+        h = sigma - m[1] * a + m[5] * c if terms > 3 else sigma - m[1] * a
+        return sigma, h, jnp.sqrt(h * h + m[2] * c)
+
+    def _slope(m, c):
+        return m[4] + m[6] * c if terms > 4 else m[4]
+
+    class TwoRootPs(MaterialForm):
+        """P̃_s = 1 − t (t + m₃c) / (8 (σR + m₄c [+ m₆c²])), h = σ − m₁a [+ m₅c], R = √(h² + m₂c)."""
+
+        name = "two-root-ps"
+        equation = (
+            "P_s = 1 - t (t + m3 c) / (8 (σ R + m4 c"
+            f"{' + m6 c²' if terms > 4 else ''})), t = h + R, R = √(h² + m2 c), "
+            f"h = σ - m1 a{' + m5 c' if terms > 3 else ''}, σ = √(1 - m0 a²), degree {degree}"
+        )
+        integral = PS
+        axes = _axes(least_alpha)
+        shape: ClassVar = {"terms": terms, "degree": degree, "least_alpha": least_alpha}
+
+        def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+            """Give m₀ … m₆, as many as the form has."""
+            alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
+            y, kappa, beta = b * b, (1 - alpha) * (1 + alpha), 1 - alpha
+            q = 1 - kappa * y
+            root = jnp.sqrt(q)
+            u = _surfaces(self.coefficients, terms, degree, alpha, y)
+            if terms == 3:
+                return (
+                    kappa,
+                    kappa * b / root,
+                    beta * u[0] * u[0] / q,
+                    (2 * u[1] + beta * u[2]) / root,
+                    u[1] / q,
+                )
+            h = beta * u[1] - u[0] * u[0] / 4
+            m = (
+                kappa,
+                kappa * b / root,
+                u[0] * u[0] / q,
+                (2 * (u[2] - h) + beta * u[3]) / root,
+                u[2] / q,
+                h / root,
+            )
+            return m if terms == 4 else (*m, beta * u[4] / q)
+
+        def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+            """Evaluate P̃_s of a material at u·n and u·t."""
+            c, a = cos_un, cos_ut
+            sigma, h, root = _parts(m, c, a)
+            t = h + root
+            below = jnp.maximum(sigma * root + _slope(m, c) * c, LEAST)
+            return 1 - 0.125 * t * (t + m[3] * c) / below
+
+        def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+            """Give the denominator over its value at c = 0."""
+            sigma, _, root = _parts(m, cos_un, cos_ut)
+            return 1 + _slope(m, cos_un) * cos_un / (sigma * root)
+
+        @classmethod
+        def coefficient_names(cls) -> list:
+            """Name the coefficients by surface and monomial."""
+            return _names(surfaces, degree)
+
+        @classmethod
+        def starts(cls) -> list[np.ndarray]:
+            """Give a start: the root of λ² − 2hλ − e with e = (1.7 α)² c/q."""
+            values = [0.0, 0.03, 0.0] if terms == 3 else [0.0, 0.0, 0.03, 0.0, 0.0]
+            return [_flat(values[:terms], degree, {0: (1.7, 0.0)})]
+
+    return TwoRootPs
+
+
+@functools.cache
+def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> type[Form]:
+    """Give the closed form with the cubic's root λ from a quadratic and `steps` of Newton's.
+
+    The quadratic has one of the cubic's factors, λ + S + T, frozen as g = S + max(S, T), without
+    coefficients; or, where `degree` ≥ 0, as S + √(S² + T² + m₅c), m₅ a polynomial of that degree.
+    """
+
+    class CubicPs(MaterialForm):
+        """P̃_s = 1 − √((λ + c)(λ + E/σ²)) / D, E = α²c, D = ((λ + T)² − S²)/λ + 2 (λ + T + E)."""
+
+        name = "cubic-ps"
+        equation = (
+            "P_s in closed form, λ from λ² - (S - T)(1 - e) λ = e, e = E / (g + E), "
+            f"g = S + {'max(S, T)' if degree < 0 else '√(S² + T² + m5 c)'}, E = α²c"
+            f"{f', and {steps} steps' if steps else ''}"
+        )
+        integral = PS
+        axes = _axes(least_alpha)
+        shape: ClassVar = {"steps": steps, "degree": degree, "least_alpha": least_alpha}
+
+        def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+            """Give κ, α², κb, q, √q, and m₅ where there is one."""
+            alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
+            y, kappa, square = b * b, (1 - alpha) * (1 + alpha), alpha * alpha
+            q = 1 - kappa * y
+            m = (kappa, square, kappa * b, q, jnp.sqrt(q))
+            if degree < 0:
+                return m
+            (u,) = _surfaces(self.coefficients, 1, degree, alpha, y)
+            return (*m, u * (1 - alpha) * square)
+
+        def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+            """Evaluate P̃_s of a material at u·n and u·t."""
+            # notation: c, a, S, T, E, λ as above; w = −E₁ of λ³ + (E + 2T) λ² − E₁λ − E.
+            c, a = cos_un, cos_ut
+            sigma2 = 1 - m[0] * a * a
+            s, t, e = m[4] * jnp.sqrt(sigma2), m[2] * a, m[1] * c
+            square = s * s if degree >= 0 or not steps else None
+            g = jnp.maximum(s, t) if degree < 0 else jnp.sqrt(square + t * t + m[5] * c)
+            part = e / (s + g + e)
+            h = (s - t) * (0.5 - 0.5 * part)
+            root = jnp.maximum(h + jnp.sqrt(h * h + part), LEAST)
+            ellipse = None
+            if steps:
+                b, w = e + t + t, (1 - sigma2) - m[3]
+                for _ in range(steps):
+                    y = root + b
+                    z = y * root + w
+                    slope = jnp.maximum((y + root) * root + z, LEAST)
+                    root = jnp.maximum(root - (z * root - e) / slope, LEAST)
+                ellipse = 3 * root + (b + b) + w / root
+            else:
+                top = root + t
+                both = top + e
+                ellipse = (top * top - square) / root + (both + both)
+            return 1 - jnp.sqrt((root + c) * (root + e / sigma2)) / jnp.maximum(ellipse, LEAST)
+
+        @classmethod
+        def coefficient_names(cls) -> list:
+            """Name the coefficients by surface and monomial."""
+            return _names(["m5"], degree) if degree >= 0 else []
+
+        @classmethod
+        def starts(cls) -> list[np.ndarray]:
+            """Give a start: a constant."""
+            return [_flat([2.0], degree) if degree >= 0 else np.zeros(0)]
+
+    return CubicPs

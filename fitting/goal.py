@@ -1,0 +1,31 @@
+"""What a fit is to make small."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from fitting.minimax import Side
+
+Norm = Literal["l2", "linf"]
+Rounding = Literal["none", "float32", "float16"]
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Least squares ('l2') or least largest error ('linf'), of the error or of the relative one.
+
+    `side` 'below' allows no value above the exact one: energy is lost, not created; it is for
+    'linf'. `rounding` is the precision that the coefficients are given in.
+    """
+
+    norm: Norm = "l2"
+    relative: bool = False
+    side: Side = "both"
+    rounding: Rounding = "none"
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for a side with least squares."""
+        if self.side != "both" and self.norm != "linf":
+            raise ValueError(f"side = {self.side!r} with norm = 'l2': allowed with norm = 'linf'")
+
+
+LEAST_SQUARES = Goal()

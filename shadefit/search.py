@@ -1,0 +1,204 @@
+"""`shadefit search`: families of forms, fitted one after the other, and the frontier among them.
+
+A candidate's table is written as soon as it is fitted; a later run with the same folder takes it
+from there, so that an interrupted search goes on where it stopped.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from coefficients.catalogue import QUANTITIES, from_fit, load
+from coefficients.compare import compare
+from coefficients.cost import count
+from coefficients.shaders import functions_of
+from coefficients.table import SCHEMA, Table, read, serialise, write_whole, write_whole_bytes
+from fitting import Form, Goal, improve
+from fitting.families import candidates
+from fitting.grow import grown_r
+from programs.trace import trace
+from shadefit.figures.search import draw
+from shadefit.refit import require_writable
+from shadefit.terminal import print_json, print_table, stages
+
+
+@dataclass(frozen=True)
+class Found:
+    """A candidate: its table's name, file, operations a call, and errors off the grid."""
+
+    name: str
+    form: str
+    coefficients: int
+    operations: int
+    rms: float
+    largest: float
+    file: str
+
+
+def run(
+    quantity: str,
+    budget: int | None,
+    max_error: float | None,
+    least_alpha: float,
+    goal: Goal,
+    out: Path,
+    as_json: bool,
+) -> None:
+    """Fit every candidate of a quantity that is within the budget, and print the frontier."""
+    if quantity not in QUANTITIES:
+        raise ValueError(f"nothing is called {quantity!r}: allowed are {', '.join(QUANTITIES)}")
+    if budget is not None and budget < 1:
+        raise ValueError(f"budget = {budget}: at least one operation is needed")
+    if max_error is not None and not max_error > 0:
+        raise ValueError(f"max-error = {max_error}: it must be positive")
+    if not 0.01 <= least_alpha < 1:
+        raise ValueError(f"least-alpha = {least_alpha}: allowed are 0.01 to below 1")
+    require_writable(out)
+    found, refused = [], 0
+    with stages() as progress:
+        task = progress.add_task(quantity, total=None)
+        for form in _candidates(quantity, least_alpha):
+
+            def tell(stage: str, done: int = len(found)) -> None:
+                progress.update(task, description=f"{quantity}: {done} forms; {stage}")
+
+            # The count needs no values: forms beyond the budget are never fitted.
+            if budget is not None and _operations(_blank(form)) > budget:
+                continue
+            table = _made_before(form, goal, out) or _fitted(form, goal, out, tell)
+            if table is None:
+                refused += 1
+                continue
+            found.append(_found(table, out))
+    if not found:
+        raise ValueError(f"no form of {quantity} was found within {budget} operations")
+    best = frontier(found)
+    good = [each for each in best if max_error is None or each.largest <= max_error]
+    published = _published(quantity)
+    drawn = out / f"{quantity}-frontier"
+    for extension, data in draw(quantity, found, best, published).items():
+        write_whole_bytes(drawn.with_suffix(f".{extension}"), data)
+    if as_json:
+        records = {"frontier": best, "good": good, "all": found}
+        print_json(
+            {
+                "quantity": quantity,
+                "published": asdict(published),
+                "refused": refused,
+                **{key: [asdict(each) for each in value] for key, value in records.items()},
+            }
+        )
+        return
+    limit = "" if max_error is None else f"; {len(good)} of them within {max_error:g}"
+    print_table(
+        f"{quantity}: the frontier of {len(found)} forms{limit}",
+        ["table", "form", "coefficients", "operations", "rms", "largest", "published / this"],
+        [_row(each, published) for each in (published, *(good or best))],
+        f"Operations a call, of P_s a direction. {refused} forms refused: no start without poles. "
+        f"Plot: {drawn}.png",
+    )
+
+
+def frontier(found: list[Found]) -> list[Found]:
+    """Give those that no other one beats in both operations and largest error, by operations."""
+    best: list[Found] = []
+    for each in sorted(found, key=lambda each: (each.operations, each.largest, each.name)):
+        if not best or each.largest < best[-1].largest:
+            best.append(each)
+    return best
+
+
+def _candidates(quantity: str, least_alpha: float) -> Iterator[type[Form]]:
+    return grown_r(least_alpha) if quantity == "r" else candidates(quantity, least_alpha)
+
+
+def _name(form: type[Form], goal: Goal) -> str:
+    """Name a candidate by its family and a digest of its shape and goal: the same in every run."""
+    text = json.dumps([form.shape, asdict(goal)], sort_keys=True)
+    return f"{form.name}-{hashlib.sha256(text.encode()).hexdigest()[:10]}"
+
+
+def _blank(form: type[Form]) -> Table:
+    size = len(form.coefficient_names())
+    return Table.model_validate(
+        {
+            "schema": SCHEMA,
+            "name": "blank",
+            "quantity": form.integral.name,
+            "form": form.name,
+            "shape": form.shape,
+            "equation": form.equation,
+            "arguments": [
+                {"name": axis.name, "unit": axis.unit, "domain": [axis.lower, axis.upper]}
+                for axis in form.axes
+            ],
+            # Numbers that are neither zero nor one nor equal: no operation is saved by them.
+            "coefficients": [0.37 + 0.013 * k for k in range(size)],
+            "coefficient_names": form.coefficient_names(),
+        }
+    )
+
+
+def _operations(table: Table) -> int:
+    return count(trace(functions_of(table)[-1])).operations
+
+
+def _made_before(form: type[Form], goal: Goal, out: Path) -> Table | None:
+    path = out / f"{_name(form, goal)}.json"
+    if not path.is_file():
+        return None
+    table = read(path)
+    made_for = Goal() if table.goal is None else Goal(**table.goal.model_dump())
+    same = (table.form, table.shape, made_for) == (form.name, form.shape, goal)
+    return table if same and table.errors is not None else None
+
+
+def _fitted(form: type[Form], goal: Goal, out: Path, tell) -> Table | None:
+    """Fit a candidate and write its table; None where it is refused."""
+    name = _name(form, goal)
+    try:
+        fit = improve(form, goal, tell)
+    except ValueError as error:
+        tell(str(error))
+        return None
+    table = from_fit(fit, f"shadefit search {form.integral.name}", name)
+    write_whole(out / f"{name}.json", serialise(table))
+    return table
+
+
+def _found(table: Table, out: Path) -> Found:
+    errors = table.errors
+    assert errors is not None
+    return Found(
+        table.name,
+        table.form,
+        len(table.coefficients),
+        _operations(table),
+        errors.off_grid.rms,
+        errors.off_grid.max,
+        str(out / f"{table.name}.json"),
+    )
+
+
+def _published(quantity: str) -> Found:
+    name = f"published/{quantity}"
+    table = load(name)
+    errors = compare([(name, table)]).entries[0].errors
+    size = sum(len(row) if isinstance(row, list) else 1 for row in table.coefficients)
+    return Found(
+        name, table.form, size, _operations(table), errors.rms, errors.largest, "coefficients"
+    )
+
+
+def _row(each: Found, published: Found) -> list[str]:
+    return [
+        each.name,
+        each.form,
+        str(each.coefficients),
+        str(each.operations),
+        f"{each.rms:.3e}",
+        f"{each.largest:.3e}",
+        f"{published.largest / each.largest:.1f}",
+    ]
