@@ -33,6 +33,7 @@ def test_the_largest_error_is_lower_and_the_rms_higher_than_by_least_squares():
     assert largest.off_grid.largest == pytest.approx(largest.on_grid.largest, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rounding", "dtype"), [("float32", np.float32), ("float16", np.float16)])
 def test_rounded_coefficients_are_representable_and_better_than_if_simply_rounded(rounding, dtype):
     exact = improve(R_FORM, Goal("linf"))
@@ -54,6 +55,7 @@ def test_a_fit_from_below_creates_no_energy():
     assert both.off_grid.largest < fit.off_grid.largest < 10 * both.off_grid.largest
 
 
+@pytest.mark.slow
 def test_relative_errors_are_smaller_when_they_are_asked_for():
     points, exact = off_grid_reference(QuadraticQ)
     start = np.array([-1.7, 1.3])
@@ -85,6 +87,7 @@ def test_least_squares_has_no_side():
         Goal("l2", side="below")
 
 
+@pytest.mark.slow
 def test_the_sets_of_monomials_grow_by_one_and_improve():
     forms = []
     for form in grown_r(0.15):

@@ -74,6 +74,7 @@ def test_the_paper_s_forms_are_within_one_per_cent_of_the_least_largest_error():
     assert squares.lower_bound is None
 
 
+@pytest.mark.slow
 def test_no_program_steps_over_a_pole():
     sample = sample_of(RationalG)
     start = np.array([2.0, 0.5, 1.0, 2.0])

@@ -109,7 +109,7 @@ def candidates(quantity: str, least_alpha: float = 0.15) -> Iterator[type[Form]]
     """Give the forms of a quantity that a search tries, except for R, which grows its own."""
     if quantity == "q":
         for structure, terms, poles in itertools.product(STRUCTURES, range(5), range(3)):
-            if terms + poles and not (structure == "log" and poles):
+            if terms + poles > (structure == "free") and not (structure == "log" and poles):
                 yield pole_q(structure=structure, terms=terms, poles=poles)
     elif quantity == "g":
         for decay, rate, factor in itertools.product(DECAYS, RATES, FACTORS):

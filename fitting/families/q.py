@@ -64,7 +64,7 @@ def pole_q(*, structure: str, terms: int, poles: int) -> type[Form]:
                     for k in range(terms - 2, -1, -1):
                         total = c[k] + x * total
                     parts.insert(0, total)
-                return functools.reduce(jnp.add, parts)
+                return functools.reduce(jnp.add, map(jnp.asarray, parts))
 
             return _surround(structure, jnp.asarray(density), r)
 
