@@ -17,7 +17,9 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 Text = Annotated[str, Field(max_length=2000)]
 Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$")]
 Vector = Annotated[list[Number], Field(max_length=4096)]
+Row = Annotated[list[Number], Field(min_length=1, max_length=4096)]
 Labels = Annotated[list[Text], Field(max_length=4096)]
+LabelRow = Annotated[list[Text], Field(min_length=1, max_length=4096)]
 Pair = Annotated[list[int], Field(min_length=2, max_length=2)]
 # What tells the members of a family of forms apart: checked by fitting/families.
 Shape = dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]]
@@ -146,8 +148,8 @@ class Table(_Part):
     shape: Shape | None = None
     equation: Text
     arguments: Annotated[list[Argument], Field(min_length=1, max_length=8)]
-    coefficients: Vector | Annotated[list[Vector], Field(min_length=1, max_length=64)]
-    coefficient_names: Labels | Annotated[list[Labels], Field(min_length=1, max_length=64)]
+    coefficients: Vector | Annotated[list[Row], Field(min_length=1, max_length=64)]
+    coefficient_names: Labels | Annotated[list[LabelRow], Field(min_length=1, max_length=64)]
     grid: GridRecord | None = None
     weight: Literal["uniform", "solid-angle", "cosine"] | None = None
     goal: GoalRecord | None = None
