@@ -1,7 +1,7 @@
 """The frontier of a search: operations against the largest error of every form that was tried."""
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from shadefit.figures.style import COLOURS, MARKERS, render
 
@@ -26,8 +26,11 @@ def _figure(quantity: str, found, best, published) -> Figure:
         colour, shape = COLOURS[kind], MARKERS[kind]
         axes.scatter(*_columns(marks), s=28, color=colour, marker=shape, label=label, zorder=3)
     costs = [each.operations for each in every]
-    axes.set(xscale="log" if max(costs) > 4 * min(costs) else "linear", yscale="log")
+    wide = max(costs) > 4 * min(costs)
+    axes.set(xscale="log" if wide else "linear", yscale="log")
     axes.xaxis.set_major_formatter(ScalarFormatter())
+    if not wide:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(xlabel="operations", ylabel="largest error", title=quantity)
     axes.grid(color="#e5e5e5", lw=0.6)
     axes.set_axisbelow(True)
