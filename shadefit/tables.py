@@ -15,7 +15,7 @@ def list_tables(json: bool) -> None:
         "Tables",
         ["name", "quantity", "form", "equation", "rms", "largest"],
         [
-            [name, table.quantity, table.form, table.equation, *_errors(table)]
+            [name, table.quantity, table.form, _short(table.equation), *_errors(table)]
             for name, table in tables.items()
         ],
         "Errors as the table states them, off the grid; 'compare' measures published ones.",
@@ -32,6 +32,11 @@ def _record(name: str, table: Table) -> dict:
         "rms": errors.rms if errors else None,
         "max": errors.max if errors else None,
     }
+
+
+def _short(equation: str) -> str:
+    """Leave out what is too long for a column: --json has it."""
+    return equation if len(equation) <= 20 else "—"
 
 
 def _errors(table: Table) -> list[str]:
