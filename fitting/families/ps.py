@@ -7,100 +7,27 @@ material, and a short one for each direction of light.
 """
 
 import functools
-from collections.abc import Callable
-from dataclasses import replace
 from typing import ClassVar
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from fitting.families.material import (
+    MaterialForm,
+    axes_from,
+    flat_start,
+    surface_names,
+    surface_values,
+)
 from fitting.form import Form
-from integrals import PS, Axis
+from integrals import PS
 from shading.types import Scalar
 
 MAX_DEGREE = 4
 # Denominators are larger for all unit vectors u, n and t: this keeps rounding, and cosines that no
 # such vectors have, from dividing by zero.
 LEAST = 1e-6
-
-
-def _axes(least_alpha: float):
-    return (replace(PS.axes[0], lower=least_alpha, open_below=False), *PS.axes[1:])
-
-
-class MaterialForm(Form):
-    """A form of P_s in two steps: a material's numbers, then a direction's value."""
-
-    def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
-        """Give what a material's directions share."""
-        raise NotImplementedError
-
-    def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        """Evaluate P̃_s of a material at u·n and u·t."""
-        raise NotImplementedError
-
-    def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        """Give what must stay positive for a material at u·n and u·t."""
-        return jnp.ones(())
-
-    def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
-        """Evaluate P̃_s at one material and one direction of light."""
-        cosines = _cosines(theta_f, theta_u, phi)
-        return self.along(self.material(alpha, theta_f), *cosines)
-
-    def relaxed(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
-        """Take the two cosines of the light for independent of each other and of the material."""
-        cosines = (
-            Axis("cos_un", "u·n", "1", 0.0, 1.0, "cosine of the light and the normal"),
-            Axis("cos_ut", "u·t", "1", -1.0, 1.0, "cosine of the light and the fibre"),
-        )
-
-        def value(alpha, theta_f, cos_un, cos_ut):
-            return self.along(self.material(alpha, theta_f), cos_un, cos_ut)
-
-        return value, (*self.axes[:2], *cosines)
-
-    def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
-        """Give the radicand or denominator that a fit could make negative."""
-        cosines = _cosines(theta_f, theta_u, phi)
-        return self.positive_along(self.material(alpha, theta_f), *cosines)
-
-
-def _cosines(theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> tuple[Array, Array]:
-    cos_un = jnp.cos(theta_u)
-    in_plane = jnp.sin(theta_u) * jnp.cos(phi) * jnp.sin(theta_f)
-    return cos_un, in_plane + cos_un * jnp.cos(theta_f)
-
-
-def _surfaces(coefficients, count: int, degree: int, alpha, y) -> list[Array]:
-    """Give `count` polynomials of total degree `degree` in α and y, their coefficients in a row."""
-    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-    size = len(powers)
-    return [
-        functools.reduce(
-            jnp.add,
-            [
-                coefficients[k * size + n] * alpha**i * y**j if i + j else coefficients[k * size]
-                for n, (i, j) in enumerate(powers)
-            ],
-        )
-        for k in range(count)
-    ]
-
-
-def _names(surfaces: list[str], degree: int) -> list[str]:
-    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-    return [f"{name}: α^{i} y^{j}" for name in surfaces for i, j in powers]
-
-
-def _flat(values: list[float], degree: int, slopes=None) -> np.ndarray:
-    """Give coefficients of constant surfaces, or with `slopes` by α and y where there are some."""
-    start = np.zeros((len(values), (degree + 1) * (degree + 2) // 2))
-    start[:, 0] = values
-    for k, (by_alpha, by_y) in (slopes or {}).items():
-        start[k, [degree + 1, 1]] = by_alpha, by_y
-    return start.ravel()
 
 
 @functools.cache
@@ -121,14 +48,14 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> type[Form]:
             f"√(m2 + m3 c + m4 a²{' + m5 c a' if skew else ''}), degree {degree}"
         )
         integral = PS
-        axes = _axes(least_alpha)
+        axes = axes_from(least_alpha)
         shape: ClassVar = {"skew": skew, "degree": degree, "least_alpha": least_alpha}
 
         def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
             """Give m₀ … m₄, and m₅, m₆ where there are products."""
             alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
             y, kappa = b * b, (1 - alpha) * (1 + alpha)
-            u = _surfaces(self.coefficients, len(surfaces), degree, alpha, y)
+            u = surface_values(self.coefficients, len(surfaces), degree, alpha, y)
             m = (-(1 - alpha) * u[0], kappa * b * u[1], 1 - kappa * y, u[2], u[3])
             return (*m, b * u[4], (1 - alpha) * b * u[5]) if skew else m
 
@@ -147,13 +74,13 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> type[Form]:
         @classmethod
         def coefficient_names(cls) -> list:
             """Name the coefficients by surface and monomial."""
-            return _names(surfaces, degree)
+            return surface_names(surfaces, degree)
 
         @classmethod
         def starts(cls) -> list[np.ndarray]:
             """Give a start: the coplanar case c = 0, where T/2S is exact, and a light along n."""
             values = [0.2, 0.5, 0.0, -0.95, 0.0, 0.0][: len(surfaces)]
-            return [_flat(values, degree, {3: (1.0, 1.7)})]
+            return [flat_start(values, degree, {3: (1.0, 1.7)})]
 
     return OneRootPs
 
@@ -185,7 +112,7 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> type[Form]:
             f"h = σ - m1 a{' + m5 c' if terms > 3 else ''}, σ = √(1 - m0 a²), degree {degree}"
         )
         integral = PS
-        axes = _axes(least_alpha)
+        axes = axes_from(least_alpha)
         shape: ClassVar = {"terms": terms, "degree": degree, "least_alpha": least_alpha}
 
         def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
@@ -194,7 +121,7 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> type[Form]:
             y, kappa, beta = b * b, (1 - alpha) * (1 + alpha), 1 - alpha
             q = 1 - kappa * y
             root = jnp.sqrt(q)
-            u = _surfaces(self.coefficients, terms, degree, alpha, y)
+            u = surface_values(self.coefficients, terms, degree, alpha, y)
             if terms == 3:
                 return (
                     kappa,
@@ -230,13 +157,13 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> type[Form]:
         @classmethod
         def coefficient_names(cls) -> list:
             """Name the coefficients by surface and monomial."""
-            return _names(surfaces, degree)
+            return surface_names(surfaces, degree)
 
         @classmethod
         def starts(cls) -> list[np.ndarray]:
             """Give a start: the root of λ² − 2hλ − e with e = (1.7 α)² c/q."""
             values = [0.0, 0.03, 0.0] if terms == 3 else [0.0, 0.0, 0.03, 0.0, 0.0]
-            return [_flat(values[:terms], degree, {0: (1.7, 0.0)})]
+            return [flat_start(values[:terms], degree, {0: (1.7, 0.0)})]
 
     return TwoRootPs
 
@@ -259,7 +186,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> type[Form]:
             f"{f', and {steps} steps' if steps else ''}"
         )
         integral = PS
-        axes = _axes(least_alpha)
+        axes = axes_from(least_alpha)
         shape: ClassVar = {"steps": steps, "degree": degree, "least_alpha": least_alpha}
 
         def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
@@ -270,7 +197,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> type[Form]:
             m = (kappa, square, kappa * b, q, jnp.sqrt(q))
             if degree < 0:
                 return m
-            (u,) = _surfaces(self.coefficients, 1, degree, alpha, y)
+            (u,) = surface_values(self.coefficients, 1, degree, alpha, y)
             return (*m, u * (1 - alpha) * square)
 
         def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
@@ -302,11 +229,11 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> type[Form]:
         @classmethod
         def coefficient_names(cls) -> list:
             """Name the coefficients by surface and monomial."""
-            return _names(["m5"], degree) if degree >= 0 else []
+            return surface_names(["m5"], degree) if degree >= 0 else []
 
         @classmethod
         def starts(cls) -> list[np.ndarray]:
             """Give a start: a constant."""
-            return [_flat([2.0], degree) if degree >= 0 else np.zeros(0)]
+            return [flat_start([2.0], degree) if degree >= 0 else np.zeros(0)]
 
     return CubicPs

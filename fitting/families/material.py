@@ -1,0 +1,93 @@
+"""What the forms of P_s share: two steps, and functions of the material that are polynomials."""
+
+import functools
+from collections.abc import Callable
+from dataclasses import replace
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.form import Form
+from integrals import PS, Axis
+from shading.types import Scalar
+
+
+def axes_from(least_alpha: float):
+    """Give the axes of P_s with α from `least_alpha`."""
+    return (replace(PS.axes[0], lower=least_alpha, open_below=False), *PS.axes[1:])
+
+
+class MaterialForm(Form):
+    """A form of P_s in two steps: a material's numbers, then a direction's value."""
+
+    def material(self, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+        """Give what a material's directions share."""
+        raise NotImplementedError
+
+    def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Evaluate P̃_s of a material at u·n and u·t."""
+        raise NotImplementedError
+
+    def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Give what must stay positive for a material at u·n and u·t."""
+        return jnp.ones(())
+
+    def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+        """Evaluate P̃_s at one material and one direction of light."""
+        cosines = _cosines(theta_f, theta_u, phi)
+        return self.along(self.material(alpha, theta_f), *cosines)
+
+    def relaxed(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
+        """Take the two cosines of the light for independent of each other and of the material."""
+        cosines = (
+            Axis("cos_un", "u·n", "1", 0.0, 1.0, "cosine of the light and the normal"),
+            Axis("cos_ut", "u·t", "1", -1.0, 1.0, "cosine of the light and the fibre"),
+        )
+
+        def value(alpha, theta_f, cos_un, cos_ut):
+            return self.along(self.material(alpha, theta_f), cos_un, cos_ut)
+
+        return value, (*self.axes[:2], *cosines)
+
+    def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+        """Give the radicand or denominator that a fit could make negative."""
+        cosines = _cosines(theta_f, theta_u, phi)
+        return self.positive_along(self.material(alpha, theta_f), *cosines)
+
+
+def _cosines(theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> tuple[Array, Array]:
+    cos_un = jnp.cos(theta_u)
+    in_plane = jnp.sin(theta_u) * jnp.cos(phi) * jnp.sin(theta_f)
+    return cos_un, in_plane + cos_un * jnp.cos(theta_f)
+
+
+def surface_values(coefficients, count: int, degree: int, alpha, y) -> list[Array]:
+    """Give `count` polynomials of total degree `degree` in α and y, their coefficients in a row."""
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    size = len(powers)
+    return [
+        functools.reduce(
+            jnp.add,
+            [
+                coefficients[k * size + n] * alpha**i * y**j if i + j else coefficients[k * size]
+                for n, (i, j) in enumerate(powers)
+            ],
+        )
+        for k in range(count)
+    ]
+
+
+def surface_names(surfaces: list[str], degree: int) -> list[str]:
+    """Name the coefficients of surfaces by surface and monomial."""
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    return [f"{name}: α^{i} y^{j}" for name in surfaces for i, j in powers]
+
+
+def flat_start(values: list[float], degree: int, slopes=None) -> np.ndarray:
+    """Give coefficients of constant surfaces, or with `slopes` by α and y where there are some."""
+    start = np.zeros((len(values), (degree + 1) * (degree + 2) // 2))
+    start[:, 0] = values
+    for k, (by_alpha, by_y) in (slopes or {}).items():
+        start[k, [degree + 1, 1]] = by_alpha, by_y
+    return start.ravel()
