@@ -19,6 +19,8 @@ from integrals import INTEGRALS
 
 FOLDER = Path(__file__).parent
 QUANTITIES = tuple(INTEGRALS)
+# Those that the paper has a table of.
+PUBLISHED = ("ps", "g", "q", "r")
 # A published table with this behind its name is taken as printed, its errata left in.
 AS_PRINTED = "@printed"
 _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
@@ -28,7 +30,7 @@ def names() -> list[str]:
     """List the names that `load` knows, published tables last."""
     refitted = [path.stem for path in sorted((FOLDER / "refit").glob("*.json"))]
     best = names_of_best()
-    published = [f"published/{path.stem}" for path in sorted((FOLDER / "published").glob("*.json"))]
+    published = [f"published/{name}" for name in sorted(PUBLISHED)]
     printed = [
         name + AS_PRINTED for name in published if load(name) != load(name + AS_PRINTED)
     ]  # fmt: skip
@@ -50,7 +52,8 @@ def load(name: str) -> Table:
     folder, _, quantity = stem.rpartition("/")
     if rest == "" and folder == "best" and not printed and stem in names_of_best():
         return read(FOLDER / f"{stem}.json")
-    if rest == "" and folder in ("", "refit", "published") and quantity in QUANTITIES:
+    known = PUBLISHED if folder == "published" else QUANTITIES
+    if rest == "" and folder in ("", "refit", "published") and quantity in known:
         table = read(FOLDER / (folder or "refit") / f"{quantity}.json")
         if not printed:
             return corrected(table)
@@ -59,8 +62,7 @@ def load(name: str) -> Table:
     # os.path, unlike Path, takes a name that is too long for one that does not exist.
     if name.endswith(".json") or os.path.isfile(name):
         return corrected(read(Path(name)))
-    known = (*QUANTITIES, *(f"published/{q}" for q in QUANTITIES), *names_of_best())
-    allowed = ", ".join(known)
+    allowed = ", ".join((*QUANTITIES, *(f"published/{q}" for q in PUBLISHED), *names_of_best()))
     raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
 
 
@@ -126,7 +128,8 @@ def from_fit(fit: Fit, command: str, name: str | None = None) -> Table:
         "certificates": {
             "denominator_bound": _finite(fit.certificate.bound),
             "boxes": fit.certificate.boxes,
-            **({} if fit.lower_bound is None else {"least_error": fit.lower_bound}),
+            **_known("least_error", fit.lower_bound),
+            **_known("conservative_bound", fit.conservative_bound),
         },
         "provenance": {
             "command": command,
@@ -161,6 +164,10 @@ def _errors(errors) -> dict:
         "where": errors.where,
         "points": errors.points,
     }
+
+
+def _known(name: str, value: float | None) -> dict:
+    return {} if value is None else {name: value}
 
 
 def _finite(bound: float) -> float | None:

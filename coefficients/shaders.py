@@ -260,6 +260,16 @@ def _of_r(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
     return (function("FuzzAveragePs", parameters, value, summary),)
 
 
+def _of_velvet(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
+    low = float(form.axes[0].lower)
+
+    def value(asymmetry):
+        return _with(form, coefficients)(_clamp(asymmetry, low, 0.0))
+
+    summary = "r(k), which scales the velvet phase function, from below; clamps to the domain."
+    return (function("FuzzVelvetNorm", (Parameter("asymmetry", (low, 0.0)),), value, summary),)
+
+
 def _printed(form: type[Form]) -> str:
     """Give the equation that the paper prints a form by, or the form's name."""
     return form.equation.replace("Eq. (", "Eq. ").rstrip(")") if form.shape is None else form.name
@@ -319,6 +329,7 @@ _BUILDERS = {
     "rational-g": _of_g,
     "quadratic-q": _of_q,
     "rational-r": _of_r,
+    "conservative-norm": _of_velvet,
 }
 # Forms of the families are called as the paper's are: code that calls one may call the other.
 _OF_FAMILIES = {"ps": _of_material, "g": _of_g, "q": _of_q, "r": _of_r}
@@ -330,4 +341,5 @@ _REMARKS = {
     "g": "NdotV = v·n of the view's direction v; density = NdotV = 0 is 0/0",
     "q": "density is thickness over mean free path",
     "r": "alpha is the projected area along the fibre, thetaF its polar angle",
+    "velvet": "asymmetry is k of Schlick's lobe p_Schlick(k, -sin(t, h)), whose factor r is",
 }

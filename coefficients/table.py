@@ -97,12 +97,15 @@ class ErrorRecords(_Part):
 class Certificates(_Part):
     """Proven on the whole domain: a lower bound of every denominator (None: there is none).
 
-    No coefficients of the form have a largest error below `least_error`, where it is known.
+    No coefficients of the form have a largest error below `least_error`, where it is known. Where
+    `conservative_bound` is positive, no value is above the exact one: it is a lower bound of what
+    the form leaves (fitting/velvet.py).
     """
 
     denominator_bound: Number | None = None
     boxes: Annotated[int, Field(ge=0)]
     least_error: Annotated[Number, Field(ge=0)] | None = None
+    conservative_bound: Number | None = None
 
 
 class Provenance(_Part):
@@ -143,7 +146,7 @@ class Table(_Part):
 
     schema_: Literal["shadefit.table/1"] = Field(alias="schema")
     name: Name
-    quantity: Literal["ps", "g", "q", "r"]
+    quantity: Literal["ps", "g", "q", "r", "velvet"]
     form: Name
     shape: Shape | None = None
     equation: Text

@@ -13,10 +13,10 @@ from fitting.spread import spread_points
 from integrals import INTEGRALS, Estimate, Integral
 
 # log₂ of the size of the off-grid set: R, which has no closed form, is dear.
-OFF_GRID_EXPONENT = {"ps": 17, "g": 16, "q": 16, "r": 12}
+OFF_GRID_EXPONENT = {"ps": 17, "g": 16, "q": 16, "r": 12, "velvet": 16}
 OFF_GRID_SEED = 20200717
 # log₂ of the number of points that the boundary's are half as many as.
-CHECK_EXPONENT = {"ps": 15, "g": 15, "q": 13, "r": 10}
+CHECK_EXPONENT = {"ps": 15, "g": 15, "q": 13, "r": 10, "velvet": 13}
 # 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py); 96² for lower α.
 R_NODES, R_NODES_LOW_ALPHA, R_ALPHA = 32, 96, 0.15
 # Points that are evaluated at once.
@@ -42,14 +42,14 @@ def exact_values(integral: Integral, points: np.ndarray) -> np.ndarray:
 def exact_estimates(integral: Integral, points: np.ndarray) -> Estimate:
     """Evaluate the same with the error that the leg states, both (n,)."""
     if integral.name != "r":
-        return _in_chunks(functools.partial(_estimates, integral.name), points, CHUNK)
+        return in_chunks(functools.partial(_estimates, integral.name), points, CHUNK)
     nodes = R_NODES if np.min(points[:, 0]) >= R_ALPHA else R_NODES_LOW_ALPHA
-    return _in_chunks(functools.partial(_estimates, "r", nodes=nodes), points, CHUNK_OF_R)
+    return in_chunks(functools.partial(_estimates, "r", nodes=nodes), points, CHUNK_OF_R)
 
 
 def form_values(form: Form, points: np.ndarray) -> np.ndarray:
     """Evaluate a form at points (n, axes)."""
-    return np.asarray(_in_chunks(functools.partial(_apply, form), points, CHUNK))
+    return np.asarray(in_chunks(functools.partial(_apply, form), points, CHUNK))
 
 
 def measure(difference: np.ndarray, points: np.ndarray, form: type[Form], weights=None) -> Errors:
@@ -86,7 +86,7 @@ def off_grid_reference(form: type[Form]) -> tuple[np.ndarray, np.ndarray]:
     return points, exact_values(form.integral, points)
 
 
-def _in_chunks(function, points: np.ndarray, chunk: int):
+def in_chunks(function, points: np.ndarray, chunk: int):
     """Apply a function of (chunk, axes) to points (n, axes): it is compiled once for any n."""
     count = len(points)
     padded = np.concatenate([points, np.repeat(points[-1:], -count % chunk, axis=0)])

@@ -1,7 +1,7 @@
 """Refits of the paper's forms: exact values on a grid, the fit, its errors and certificate."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import jax.numpy as jnp
@@ -16,6 +16,7 @@ from fitting.grid import WEIGHTS, Grid, Weight, gauss_grid, trapezoid_grid
 from fitting.paper import QuadraticQ, RationalG, RationalPs, RationalR
 from fitting.rational import fit_quadratic_q, fit_rational_g, fit_rational_ps, fit_rational_r
 from fitting.samples import Sample
+from fitting.velvet import ConservativeNorm, certify_conservative, fit_conservative_norm
 
 Progress = Callable[[str], None]
 
@@ -25,7 +26,8 @@ class Fit:
     """A form with its coefficients, where and how it was made, and how good it is.
 
     `directions` is the number of lights a node (0 where the integral has none). No coefficients of
-    the form have a largest error below `lower_bound`, where one is known.
+    the form have a largest error below `lower_bound`, where one is known; where
+    `conservative_bound` is positive, no value is above the exact one.
     """
 
     form: Form
@@ -39,10 +41,11 @@ class Fit:
     certificate: Certificate
     goal: Goal = LEAST_SQUARES
     lower_bound: float | None = None
+    conservative_bound: float | None = None
 
 
 def refit(name: str, count: int, weight: Weight, progress: Progress = lambda _: None) -> Fit:
-    """Refit the paper's form of 'ps', 'g', 'q' or 'r' on `count` nodes an axis.
+    """Refit a quantity's form, of published ones the paper's, on `count` nodes an axis.
 
     `weight` is the measure of light directions in the fit of P_s; the other integrals have none.
     `progress` is told of each stage. Raises ValueError for another name or weight, for a grid with
@@ -124,10 +127,21 @@ def _judged(form, grid, weight, directions, solver, reference_error, on_grid) ->
     )
 
 
+def _refit_velvet(count: int, weight: Weight, progress: Progress) -> Fit:
+    run = _simple(ConservativeNorm, trapezoid_grid, fit_conservative_norm, "linear program (HiGHS)")
+    fit = run(count, weight, progress)
+    bound = certify_conservative(fit.form).bound
+    if not bound > 0:
+        raise ValueError(f"the fit of velvet on {count} nodes is not shown to create no energy")
+    goal = Goal(norm="linf", relative=True, side="below")
+    return replace(fit, goal=goal, conservative_bound=bound)
+
+
 _MARQUARDT = "Levenberg–Marquardt (optimistix)"
 REFITS = {
     "ps": _refit_ps,
     "g": _simple(RationalG, gauss_grid, fit_rational_g, _MARQUARDT),
     "q": _simple(QuadraticQ, gauss_grid, fit_quadratic_q, "QR"),
     "r": _simple(RationalR, trapezoid_grid, fit_rational_r, _MARQUARDT),
+    "velvet": _refit_velvet,
 }

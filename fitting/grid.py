@@ -44,6 +44,12 @@ def gauss_grid(axes: tuple[Axis, ...], count: int) -> Grid:
     return Grid(axes, nodes, _product([w / 2] * len(axes)), "gauss-legendre")
 
 
+def measure_of_lights(theta_u: np.ndarray, weight: Weight) -> np.ndarray:
+    """Give the density of a measure of lights in θu and φ, at θu."""
+    sine = np.ones_like(theta_u) if weight == "uniform" else np.sin(theta_u)
+    return sine * np.cos(theta_u) if weight == "cosine" else sine
+
+
 def light_directions(theta_u: Axis, count: int, weight: Weight) -> tuple[np.ndarray, np.ndarray]:
     """Give lights (count², 2) as θu, φ and weights (count²,) that sum to one.
 
@@ -53,11 +59,7 @@ def light_directions(theta_u: Axis, count: int, weight: Weight) -> tuple[np.ndar
     x, w = np.polynomial.legendre.leggauss(count)
     theta = theta_u.lower + (theta_u.upper - theta_u.lower) * (x + 1) / 2
     phi = (np.arange(count) + 0.5) * np.pi / count
-    density = {
-        "uniform": np.ones(count),
-        "solid-angle": np.sin(theta),
-        "cosine": np.sin(theta) * np.cos(theta),
-    }[weight]
+    density = measure_of_lights(theta, weight)
     weights = np.repeat(w * density, count)
     return (
         np.stack([np.repeat(theta, count), np.tile(phi, count)], axis=1),

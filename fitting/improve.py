@@ -17,6 +17,7 @@ from fitting.errors import check_reference, form_values, measure, off_grid_error
 from fitting.fit import Fit, Progress
 from fitting.form import Form
 from fitting.goal import Goal
+from fitting.grid import Weight
 from fitting.minimax import (
     Residuals,
     badness,
@@ -25,7 +26,7 @@ from fitting.minimax import (
     minimise_largest,
     residuals,
 )
-from fitting.samples import SEED, Sample, sample_of
+from fitting.samples import SEED, Sample, sample_of, scale_at
 from fitting.solve import solve_nonlinear
 
 # Steps, and fewer for forms of many coefficients, which step slowly.
@@ -48,13 +49,15 @@ def improve(
     goal: Goal,
     progress: Progress = lambda _: None,
     start: np.ndarray | None = None,
+    weight: Weight = "uniform",
 ) -> Fit:
     """Fit a form to a goal on its sample, from its own starts or from `start`.
 
-    Raises ValueError where no start gives a form without poles, and where the result has one.
+    `weight` is the measure of lights in the fit of P_s (fitting/samples.py). Raises ValueError
+    where no start gives a form without poles, and where the result has one.
     """
     progress(f"exact {form.integral.symbol} where {form.name} is fitted")
-    sample = sample_of(form)
+    sample = sample_of(form, goal, weight)
     progress(f"{form.name}: least squares")
     starts = [start.ravel()] if start is not None else form.starts()
     if not starts:
@@ -62,7 +65,7 @@ def improve(
     found = _least_squares(form, sample, goal, starts)
     if goal.norm == "linf":
         progress(f"{form.name}: least largest error")
-        found, sample = _least_largest(form, sample, goal, found)
+        found, sample = _least_largest(form, sample, goal, weight, found)
     if goal.rounding != "none":
         progress(f"{form.name}: rounding to {goal.rounding}")
         found = _rounded(form, sample, goal, found)
@@ -76,13 +79,13 @@ def improve(
         )
     on_grid = measure(form_values(fitted, sample.points) - sample.exact, sample.points, form)
     bound = None
-    if goal.norm == "linf" and goal.side == "both" and not goal.relative:
+    if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
         errors = form_values(fitted, sample.points) - sample.exact
         bound = lower_bound(form, sample.points, sample.exact, errors)
     return Fit(
         form=fitted,
         grid=sample,
-        weight="uniform",
+        weight=weight,
         directions=0,
         solver="Levenberg–Marquardt (optimistix)"
         + ("; linear programs (HiGHS)" if goal.norm == "linf" else ""),
@@ -95,14 +98,10 @@ def improve(
     )
 
 
-def _scale(sample: Sample, goal: Goal) -> np.ndarray:
-    return 1 / np.abs(sample.exact) if goal.relative else np.ones(len(sample.exact))
-
-
-def _problem(form: type[Form], sample: Sample, goal: Goal, fixed=None) -> Residuals:
+def _problem(form: type[Form], sample: Sample, fixed=None) -> Residuals:
     size = int(np.size(form.coefficient_names()))
     fixed = np.full(size, np.nan) if fixed is None else fixed
-    return residuals(form, sample.points, sample.exact, _scale(sample, goal), fixed)
+    return residuals(form, sample.points, sample.exact, sample.scale, fixed)
 
 
 def _linear_starts(form: type[Form], sample: Sample) -> list[np.ndarray]:
@@ -126,7 +125,7 @@ def _linear_starts(form: type[Form], sample: Sample) -> list[np.ndarray]:
 
 def _least_squares(form, sample: Sample, goal: Goal, starts: list[np.ndarray]) -> np.ndarray:
     shape = np.shape(form.coefficient_names())
-    root = _scale(sample, goal) / np.sqrt(len(sample.exact))
+    root = sample.scale / np.sqrt(len(sample.exact))
 
     def residual(z: Array) -> Array:
         fitted = form(z.reshape(shape))
@@ -137,7 +136,7 @@ def _least_squares(form, sample: Sample, goal: Goal, starts: list[np.ndarray]) -
 
     steps = STEPS if len(starts[0]) <= MANY else STEPS_OF_MANY
     fit = jax.jit(lambda z: solve_nonlinear(residual, z, steps, rtol=1e-11, atol=1e-12))
-    problem = _problem(form, sample, goal)
+    problem = _problem(form, sample)
     ends = [np.asarray(fit(jnp.asarray(z))) if len(z) else z for z in starts]
     good = [z for z in ends if _is_good(problem, z)]
     if not good:
@@ -149,28 +148,27 @@ def _is_good(problem: Residuals, z: np.ndarray) -> bool:
     return bool(np.isfinite(problem.values(z)).all() and problem.positive(z).min() > 0)
 
 
-def _least_largest(form, sample: Sample, goal: Goal, start) -> tuple[np.ndarray, Sample]:
+def _least_largest(form, sample: Sample, goal: Goal, weight, start) -> tuple[np.ndarray, Sample]:
     """Minimise the largest error, with the worst points of a finer set added in turn."""
-    found = minimise_largest(_problem(form, sample, goal), start, goal.side)
+    found = minimise_largest(_problem(form, sample), start, goal.side)
     points, exact = check_reference(form, SEED + 2)
     for _ in range(EXCHANGES if len(found) else 0):
-        finer = Sample(points, exact, sample.error)
-        worst = np.argsort(-badness(_problem(form, finer, goal).values(found), goal.side))[
-            :EXCHANGED
-        ]
+        finer = Sample(points, exact, sample.error, scale_at(points, exact, form, goal, weight))
+        worst = np.argsort(-badness(_problem(form, finer).values(found), goal.side))[:EXCHANGED]
         sample = replace(
             sample,
             points=np.concatenate([sample.points, points[worst]]),
             exact=np.concatenate([sample.exact, exact[worst]]),
+            scale=np.concatenate([sample.scale, finer.scale[worst]]),
         )
-        found = minimise_largest(_problem(form, sample, goal), found, goal.side)
+        found = minimise_largest(_problem(form, sample), found, goal.side)
     return found, sample
 
 
 def _rounded(form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
     """Round the coefficients, and refit those that are left after each turn."""
     dtype = PRECISIONS[goal.rounding]
-    slopes = _problem(form, sample, goal).slopes(found, np.arange(len(sample.exact)))
+    slopes = _problem(form, sample).slopes(found, np.arange(len(sample.exact)))
     # What rounding one may do to the values: most first.
     order = np.argsort(-np.abs(found) * np.max(np.abs(slopes), axis=0, initial=0.0))
     fixed = np.full(len(found), np.nan)
@@ -179,7 +177,7 @@ def _rounded(form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
         free = np.isnan(fixed)
         found = np.where(free, found, fixed)
         if free.any():
-            problem = _problem(form, sample, goal, fixed)
+            problem = _problem(form, sample, fixed)
             found[free] = _refitted(problem, found[free], goal)
     return found
 

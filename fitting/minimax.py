@@ -6,21 +6,25 @@ tells how far from the least of all it may be: whether an error can be had at al
 program (`lower_bound`).
 """
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 import jax
-import jax.numpy as jnp
 import numpy as np
+from jax import Array
 from scipy.optimize import linprog
 
+from fitting.errors import in_chunks
 from fitting.form import Form
 
 Side = Literal["both", "below", "above"]
 
 # Rows of a program: the worst points, this many and so many more a coefficient.
 ROWS, ROWS_A_COEFFICIENT = 300, 15
+# Points and rows that are evaluated at once.
+CHUNK, CHUNK_OF_ROWS = 4096, 512
 TRUST = 0.3
 LEAST_TRUST = 1e-6
 # Programs that gain less than this part of the error are not followed by many more.
@@ -55,23 +59,37 @@ def residuals(
 ) -> Residuals:
     """Give the weighted errors of a form's free coefficients; `fixed` (m,) has NaN for those."""
     free = np.isnan(fixed)
-    shape = np.shape(form.coefficient_names())
 
-    def whole(z):
-        return form(jnp.where(free, jnp.zeros(len(free)).at[free].set(z), fixed).reshape(shape))
+    def at(function, z, x, chunk):
+        whole = fixed.copy()
+        whole[free] = z
+        return np.asarray(in_chunks(functools.partial(function, form, whole), x, chunk))
 
-    values = jax.jit(lambda z, x: jax.vmap(lambda p: whole(z)(*p))(x))
-    positive = jax.jit(lambda z, x: jax.vmap(lambda p: whole(z).positive(*p))(x))
-    slopes = jax.jit(lambda z, x: jax.vmap(lambda p: jax.grad(lambda y: whole(y)(*p))(z))(x))
-    steep = jax.jit(
-        lambda z, x: jax.vmap(lambda p: jax.grad(lambda y: whole(y).positive(*p))(z))(x)
-    )
     return Residuals(
-        lambda z: (np.asarray(values(z, points)) - exact) * scale,
-        lambda z, rows: np.asarray(slopes(z, points[rows])) * scale[rows, None],
-        lambda z: np.asarray(positive(z, points)),
-        lambda z, rows: np.asarray(steep(z, points[rows])),
+        lambda z: (at(_values, z, points, CHUNK) - exact) * scale,
+        lambda z, rows: at(_slopes, z, points[rows], CHUNK_OF_ROWS)[:, free] * scale[rows, None],
+        lambda z: at(_rooms, z, points, CHUNK),
+        lambda z, rows: at(_room_slopes, z, points[rows], CHUNK_OF_ROWS)[:, free],
     )
+
+
+def _value(form: type[Form], c: Array, point: Array) -> Array:
+    return form(c.reshape(np.shape(form.coefficient_names())))(*point)
+
+
+def _room(form: type[Form], c: Array, point: Array) -> Array:
+    return form(c.reshape(np.shape(form.coefficient_names()))).positive(*point)
+
+
+def _at_points(function):
+    """Compile a function of a form, coefficients and a point for points: once for a form."""
+    return jax.jit(
+        lambda form, c, points: jax.vmap(lambda p: function(form, c, p))(points), static_argnums=0
+    )
+
+
+_values, _rooms = _at_points(_value), _at_points(_room)
+_slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_room, 1))
 
 
 def minimise_largest(

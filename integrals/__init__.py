@@ -8,9 +8,9 @@ from integrals.g import G as G
 from integrals.integral import Axis as Axis
 from integrals.integral import Estimate as Estimate
 from integrals.integral import Integral as Integral
-from integrals.norm import NORM as NORM
 from integrals.ps import PS as PS
 from integrals.q import Q as Q
 from integrals.r import R as R
+from integrals.velvet import VELVET as VELVET
 
-INTEGRALS = {integral.name: integral for integral in (PS, G, Q, R)}
+INTEGRALS = {integral.name: integral for integral in (PS, G, Q, R, VELVET)}

@@ -21,7 +21,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-_NAMES = ("ps", "g", "q", "r")
+_PUBLISHED = ("ps", "g", "q", "r")
+_NAMES = (*_PUBLISHED, "velvet")
 
 
 def _complete_quantity(incomplete: str) -> list[str]:
@@ -30,7 +31,7 @@ def _complete_quantity(incomplete: str) -> list[str]:
 
 def _complete_table(incomplete: str) -> list[str]:
     best = (Path(__file__).parent.parent / "coefficients" / "best").glob("*.json")
-    every = [*_NAMES, *(f"published/{name}" for name in _NAMES)]
+    every = [*_NAMES, *(f"published/{name}" for name in _PUBLISHED)]
     every += sorted(f"best/{path.stem}" for path in best)
     return [name for name in every if name.startswith(incomplete)]
 
@@ -88,7 +89,7 @@ def _refit(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            help="ps, g, q, r or all (the default); or best/NAME.",
+            help="ps, g, q, r, velvet or all (the default); or best/NAME.",
             autocompletion=_complete_quantity,
         ),
     ] = None,
@@ -156,7 +157,8 @@ def _compare(
     tables: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Names or paths; by default all four refits.", autocompletion=_complete_table
+            help="Names or paths; by default the refits of what is published.",
+            autocompletion=_complete_table,
         ),
     ] = None,
     json: Json = False,
@@ -173,7 +175,7 @@ def _compare(
     "--phi 90deg; shadefit evaluate g --density 0.2 --cos-v 0.5",
 )
 def _evaluate(
-    integral: Annotated[str, typer.Argument(help="ps, g, q or r.", metavar="INTEGRAL")],
+    integral: Annotated[str, typer.Argument(help="ps, g, q, r or velvet.", metavar="INTEGRAL")],
     alpha: Annotated[
         float | None, typer.Option(help="Projected area along the fibre, (0, 1] (ps, r).")
     ] = None,
@@ -193,6 +195,10 @@ def _evaluate(
     ] = None,
     cos_v: Annotated[
         float | None, typer.Option("--cos-v", "--nu", help="Cosine of view and normal, v·n (g).")
+    ] = None,
+    asymmetry: Annotated[
+        float | None,
+        typer.Option("--asymmetry", "--k", help="Asymmetry of Schlick's lobe, (−1, 0] (velvet)."),
     ] = None,
     samples: Annotated[int, typer.Option(help="Monte Carlo samples.")] = 1 << 16,
     sequence: Annotated[
@@ -214,6 +220,7 @@ def _evaluate(
         "phi": phi,
         "density": density,
         "cos_v": cos_v,
+        "asymmetry": asymmetry,
     }
     evaluate.run(integral, given, samples, sequence, seed, json)
 

@@ -1,6 +1,6 @@
 """`shadefit compare`: refitted and published tables side by side."""
 
-from coefficients.catalogue import AS_PRINTED, QUANTITIES, corrected, load
+from coefficients.catalogue import AS_PRINTED, PUBLISHED, corrected, load
 from coefficients.compare import Comparison, as_json, coefficient_rows, compare
 from coefficients.table import Table
 from shadefit.terminal import place, print_json, print_table
@@ -11,7 +11,7 @@ PRINTED_COEFFICIENTS = 17
 
 def run(names: list[str], json: bool) -> None:
     """Compare each table with the published one of its quantity."""
-    comparisons = [compare(_contestants(load(name), name)) for name in names or QUANTITIES]
+    comparisons = [compare(_contestants(load(name), name)) for name in names or PUBLISHED]
     if json:
         print_json({"comparisons": [as_json(comparison) for comparison in comparisons]})
         return
@@ -20,6 +20,8 @@ def run(names: list[str], json: bool) -> None:
 
 
 def _contestants(table: Table, name: str) -> list[tuple[str, Table]]:
+    if table.quantity not in PUBLISHED:
+        return [(name, table)]
     published = f"published/{table.quantity}"
     labelled = [("published", load(published))]
     printed = load(published + AS_PRINTED)

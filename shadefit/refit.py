@@ -32,6 +32,8 @@ def run(
     `given` holds the fields of a Goal that differ from the table's own.
     """
     chosen = selection(names)
+    if given and "velvet" in chosen:
+        raise ValueError(f"velvet has a goal of its own:{_options(given)} is for the others")
     folders = [out or (BEST if name.startswith("best/") else REFITS) for name in chosen]
     for folder in set(folders):
         require_writable(folder)
@@ -69,12 +71,13 @@ def _table(name: str, grid: int, weight: Weight, given: dict, tell: Callable[[st
         command = f"shadefit refit {name} --grid {grid} --weight {weight}{_options(given)}"
         fit = refit(name, grid, weight, tell)
         if goal != LEAST_SQUARES:
-            fit = improve(type(fit.form), goal, tell, np.asarray(fit.form.coefficients))
+            fit = improve(type(fit.form), goal, tell, np.asarray(fit.form.coefficients), weight)
         return from_fit(fit, command)
     table = load(name)
     own = {} if table.goal is None else table.goal.model_dump()
-    fit: Fit = improve(type(form_of(table)), Goal(**{**own, **given}), tell)
-    return from_fit(fit, f"shadefit refit {name}{_options(given)}", table.name)
+    fit: Fit = improve(type(form_of(table)), Goal(**{**own, **given}), tell, weight=weight)
+    options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
+    return from_fit(fit, f"shadefit refit {name}{options}", table.name)
 
 
 def _options(given: dict) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from coefficients.catalogue import QUANTITIES, from_fit, load
+from coefficients.catalogue import PUBLISHED, from_fit, load
 from coefficients.compare import compare
 from coefficients.cost import count
 from coefficients.shaders import functions_of
@@ -47,8 +47,8 @@ def run(
     as_json: bool,
 ) -> None:
     """Fit every candidate of a quantity that is within the budget, and print the frontier."""
-    if quantity not in QUANTITIES:
-        raise ValueError(f"nothing is called {quantity!r}: allowed are {', '.join(QUANTITIES)}")
+    if quantity not in PUBLISHED:
+        raise ValueError(f"no forms of {quantity!r} are known: allowed are {', '.join(PUBLISHED)}")
     if budget is not None and budget < 1:
         raise ValueError(f"budget = {budget}: at least one operation is needed")
     if max_error is not None and not max_error > 0:

@@ -37,7 +37,7 @@ def velvet_lobe(asymmetry: Scalar, cos_ht: Scalar) -> Array:
 def velvet_phase_function(asymmetry: Scalar, cos_ht: Scalar, normalisation: Scalar) -> Array:
     """Give p_V(k, h, t) = r(k) p_Schlick(k, −sin(t, h)), per steradian.
 
-    `asymmetry` k in (−1, 0]; `cos_ht` = h·t; `normalisation` r, of which `integrals.NORM` is the
+    `asymmetry` k in (−1, 0]; `cos_ht` = h·t; `normalisation` r, of which `integrals.VELVET` is the
     largest that creates no energy for any direction of light.
     """
     return jnp.asarray(normalisation) * velvet_lobe(asymmetry, cos_ht)

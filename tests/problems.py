@@ -81,6 +81,8 @@ def _table() -> list[Problem]:
         Problem("q", (0.0,), 1.0, "no layer"),
         Problem("q", (1.0,), float(mp.e1(1)), "E₃(1) = E₁(1)/2"),
         Problem("q", (1e4,), 0.0, "opaque layer"),
+        Problem("velvet", (0.0,), 1.0, "isotropic lobe"),
+        Problem("velvet", (-np.sqrt(0.5),), np.pi / (4 * np.sqrt(2) + 2 * np.pi), "x = s"),
     ]
     return problems
 

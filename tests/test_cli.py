@@ -25,6 +25,7 @@ POINTS = {
     "g": ["--density", "0.2", "--cos-v", "0.5"],
     "q": ["--density", "0.2"],
     "r": ["--alpha", "0.35", "--theta-f", "45deg"],
+    "velvet": ["--asymmetry", "-0.5"],
 }
 
 
@@ -168,8 +169,13 @@ def test_angles(text, radians):
         ["evaluate", "q", "--density", "0.1", "--samples", "1"],
         ["evaluate", "q", "--density", "0.1", "--seed", "-1"],
         ["evaluate", "q", "--density", "0.1", "--sequence", "sobol", "--samples", "100"],
+        ["evaluate", "velvet", "--asymmetry", "0.1"],
+        ["evaluate", "velvet", "--asymmetry", "-1"],
         ["refit", "ps", "--weight", "none"],
+        ["refit", "velvet", "--norm", "linf"],
+        ["search", "velvet"],
         ["compare", "published/zz"],
+        ["compare", "published/velvet"],
         ["export", "published/ps@"],
         ["export", "ps@printed"],
         ["--frobnicate"],

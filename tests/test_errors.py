@@ -14,9 +14,10 @@ from fitting.errors import (
 )
 from fitting.grid import gauss_grid, off_grid_points, trapezoid_grid
 from fitting.paper import PAPER_FORMS, QuadraticQ, RationalG, RationalR
+from fitting.velvet import ConservativeNorm
 from integrals import INTEGRALS, Q, R
 
-FORMS = {form.integral.name: form for form in PAPER_FORMS.values()}
+FORMS = {form.integral.name: form for form in (*PAPER_FORMS.values(), ConservativeNorm)}
 C = {"g": [-0.9, 0.4, 0.7, -0.26], "q": [-1.7, 1.2]}
 
 

@@ -11,7 +11,13 @@ import pytest
 from integrals import INTEGRALS
 from integrals.monte_carlo import SCRAMBLINGS, indicator, mean_estimate, unit_points
 
-POINTS = {"ps": (0.3, 0.7, 0.5, 1.0), "g": (0.5, 0.6), "q": (0.7,), "r": (0.3, 0.7)}
+POINTS = {
+    "ps": (0.3, 0.7, 0.5, 1.0),
+    "g": (0.5, 0.6),
+    "q": (0.7,),
+    "r": (0.3, 0.7),
+    "velvet": (-0.6,),
+}
 SEEDS, FEW, MANY = range(24), 1 << 10, 1 << 14
 
 
@@ -21,7 +27,7 @@ def estimates(monkeypatch, name, sequence, samples):
     All seeds' points go through one compiled leg, in place of the points that it would draw.
     """
     integral, point = INTEGRALS[name], POINTS[name]
-    dimensions = {"ps": 2, "g": 1, "q": 1, "r": 4}[name]
+    dimensions = {"ps": 2, "g": 1, "q": 1, "r": 4, "velvet": 2}[name]
     draws = np.stack([unit_points(samples, dimensions, sequence, seed) for seed in SEEDS])
 
     def estimate(points):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import cubature
 
-from integrals import NORM
-from integrals.norm import scattered_energy
+from integrals import VELVET
+from integrals.velvet import scattered_energy
 from shading import (
     direction,
     fiber_direction,
@@ -37,7 +37,7 @@ def over_sphere(function):
 
 
 directions = jax.jit(jax.vmap(direction))
-VELVET = jax.jit(jax.vmap(velvet_lobe))
+LOBES = jax.jit(jax.vmap(velvet_lobe))
 
 
 @pytest.mark.parametrize("asymmetry", [-0.9, -0.3, 0.0, 0.5])
@@ -77,7 +77,7 @@ def test_the_velvet_lobe_backscatters_across_the_fibre():
 
 
 def test_isotropic_velvet_is_uniform():
-    value = velvet_phase_function(0.0, 0.3, NORM.value(0.0))
+    value = velvet_phase_function(0.0, 0.3, VELVET.value(0.0))
     np.testing.assert_allclose(value, 1 / (4 * np.pi), rtol=1e-15)
 
 
@@ -98,7 +98,7 @@ def test_derivatives_are_finite_up_to_the_kink():
     for asymmetry in (0.0, -0.5, -0.999):
         assert np.isfinite(gradient(jnp.full(6, asymmetry), cosines)).all()
     step = 1e-6
-    upper, lower = VELVET(np.array([-0.5 + step, -0.5 - step]), np.array([0.4, 0.4]))
+    upper, lower = LOBES(np.array([-0.5 + step, -0.5 - step]), np.array([0.4, 0.4]))
     slope = gradient(jnp.array([-0.5]), jnp.array([0.4]))[0]
     np.testing.assert_allclose(slope, (upper - lower) / (2 * step), rtol=1e-8)
 

@@ -20,7 +20,17 @@ from programs.program import evaluate
 from programs.trace import trace
 from shadefit import export
 
-TABLES = ["ps", "g", "q", "r", "published/ps", "published/g", "published/q", "published/r"]
+TABLES = [
+    "ps",
+    "g",
+    "q",
+    "r",
+    "velvet",
+    "published/ps",
+    "published/g",
+    "published/q",
+    "published/r",
+]
 EPS = float(np.finfo(np.float32).eps)
 PAPER_NAMES = {
     "ps": ["CalcFuzzPsCoeffs", "FuzzPs"],

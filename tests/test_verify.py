@@ -17,7 +17,7 @@ from integrals import PS
 from programs.function import Parameter
 from shadefit.cli import main
 
-NAMES = ["ps", "g", "q", "r", EXACT_PS]
+NAMES = ["ps", "g", "q", "r", "velvet", EXACT_PS]
 # Every language in the precision that it is written in by default, and the closed form, which needs
 # nothing that a language may lack, in all of them. nvcc takes seconds a function.
 CASES = [

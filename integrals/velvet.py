@@ -130,8 +130,8 @@ def monte_carlo(
     return Estimate(1 / mean, error / mean**2)
 
 
-NORM = Integral(
-    name="norm",
+VELVET = Integral(
+    name="velvet",
     symbol="r",
     meaning="largest factor of the velvet phase function that creates no energy",
     definition="1 / max_u ∫ p_Schlick(k, −sin(t, h)) dω_v",

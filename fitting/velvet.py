@@ -16,8 +16,8 @@ from scipy.optimize import linprog
 from fitting.certificate import Certificate, bound_below
 from fitting.form import Form
 from fitting.grid import Grid
-from integrals import NORM
-from integrals.norm import normalisation, series_coefficients
+from integrals import VELVET
+from integrals.velvet import normalisation, series_coefficients
 from programs.function import Function, Parameter
 from programs.trace import trace
 from shading.types import Scalar
@@ -38,8 +38,8 @@ class ConservativeNorm(Form):
 
     name = "conservative-norm"
     equation = "r = s / (1 + x (c0 + c1 x + c2 (1 - s))), x = -k, s = sqrt(1 - k²)"
-    integral = NORM
-    axes = (replace(NORM.axes[0], lower=-0.95, open_below=False),)
+    integral = VELVET
+    axes = (replace(VELVET.axes[0], lower=-0.95, open_below=False),)
 
     def __call__(self, asymmetry: Scalar) -> Array:
         """Evaluate r̃ at one asymmetry."""
