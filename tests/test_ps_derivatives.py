@@ -64,7 +64,7 @@ def test_first_derivatives_of_the_closed_form_are_finite(mode):
     assert np.isfinite(gradient("closed_form", mode)(points)).all()
 
 
-@pytest.mark.parametrize("mode", [jax.grad, jax.jacfwd])
+@pytest.mark.parametrize("mode", [jax.grad, pytest.param(jax.jacfwd, marks=pytest.mark.slow)])
 def test_derivatives_of_the_quadrature_are_those_of_the_closed_form(mode):
     """Each differentiates its own formula; they meet in every corner."""
     points = np.concatenate([corners(0.3, 1.0)[:, ::4], awkward_points(1, 60, 0.3)], axis=1)

@@ -60,7 +60,7 @@ def test_a_form_is_recovered_from_its_own_values(name):
 def test_no_direction_in_the_coefficients_lowers_the_error(name):
     form, grid, _ = FITS[name]
     found = fitted(name)
-    values = jax.vmap(lambda c, x: form(c)(*x), (None, 0))
+    values = jax.jit(jax.vmap(lambda c, x: form(c)(*x), (None, 0)))
     jacobian = jax.jit(jax.jacfwd(values))(found, jnp.asarray(grid.points))
     root = np.sqrt(grid.weights)
     residual = root * (values(found, jnp.asarray(grid.points)) - exact(name))
@@ -78,7 +78,7 @@ def test_the_polynomial_is_the_one_that_numpy_finds():
     np.testing.assert_allclose(fitted("q"), expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["g", "r"])
+@pytest.mark.parametrize("name", ["g", pytest.param("r", marks=pytest.mark.slow)])
 def test_the_second_solver_ends_in_the_same_minimum(monkeypatch, name):
     form, grid, fit = FITS[name]
     first = fitted(name)
@@ -106,7 +106,9 @@ def worst_of(count: int, size: float):
     return solve
 
 
-@pytest.mark.parametrize(("name", "size"), [("g", 0.1), ("r", 0.3)])
+@pytest.mark.parametrize(
+    ("name", "size"), [("g", 0.1), pytest.param("r", 0.3, marks=pytest.mark.slow)]
+)
 def test_the_worst_of_several_starts_is_as_good(monkeypatch, name, size):
     _, grid, fit = FITS[name]
     monkeypatch.setattr(rational, "solve_nonlinear", worst_of(6, size))
