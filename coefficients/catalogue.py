@@ -15,12 +15,15 @@ from fitting import PAPER_FORMS, Fit, Form
 from fitting.families import FAMILIES, form_class
 from fitting.goal import LEAST_SQUARES
 from fitting.samples import Sample
+from fitting.velvet import ConservativeNorm
 from integrals import INTEGRALS
 
 FOLDER = Path(__file__).parent
 QUANTITIES = tuple(INTEGRALS)
 # Those that the paper has a table of.
 PUBLISHED = ("ps", "g", "q", "r")
+# Forms that are no family's: the paper's, and r(k)'s.
+SINGLE_FORMS = {**PAPER_FORMS, ConservativeNorm.name: ConservativeNorm}
 # A published table with this behind its name is taken as printed, its errata left in.
 AS_PRINTED = "@printed"
 _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
@@ -86,10 +89,10 @@ def form_of(table: Table) -> Form:
     Its axes are the form's, not the table's `arguments`. Raises ValueError for a form that is not
     known, one of another quantity, and coefficients that are not in its shape.
     """
-    if table.shape is None and table.form in PAPER_FORMS:
-        form = PAPER_FORMS[table.form]
+    if table.shape is None and table.form in SINGLE_FORMS:
+        form = SINGLE_FORMS[table.form]
     elif table.shape is None and table.form not in FAMILIES:
-        allowed = ", ".join((*PAPER_FORMS, *FAMILIES))
+        allowed = ", ".join((*SINGLE_FORMS, *FAMILIES))
         raise ValueError(f"form {table.form!r} of {table.name} is not known: allowed are {allowed}")
     else:
         form = form_class(table.form, table.shape or {})

@@ -61,6 +61,24 @@ class Function:
                 raise ValueError(f"name {name!r} occurs twice in {self.name}; allowed: once")
 
 
+def function(
+    name: str,
+    parameters: Sequence[Parameter],
+    call: Callable[..., Any],
+    summary: str = "",
+    result: int | None = None,
+    result_name: str = "result",
+) -> Function:
+    """Make any JAX function of scalars one that can be exported, counted and verified.
+
+    Arguments: `name` and `parameters` as the user of the shader sees them; `call`, in JAX;
+    `summary`, one line for the comment above it; `result`, None for a scalar or how many numbers
+    it gives, in an array called `result_name`. Returns the function. Raises ValueError for names
+    that are no identifiers or occur twice.
+    """
+    return Function(name, summary or f"{name}.", tuple(parameters), result, result_name, call)
+
+
 def input_names(function: Function) -> tuple[str, ...]:
     """Name every scalar input in order: `x` for a scalar, `c[0]`, `c[1]`, … for an array.
 

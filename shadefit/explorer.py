@@ -16,13 +16,12 @@ from matplotlib import colormaps
 
 from coefficients.catalogue import form_of, load
 from coefficients.printer import write
-from coefficients.shaders import function
 from integrals import INTEGRALS, Axis
 from integrals.g import ambient_scattering
 from integrals.ps import fraction_at
 from integrals.q import average_penetration
 from integrals.quadrature import gauss_legendre
-from programs.function import Function, Parameter
+from programs.function import Function, Parameter, function
 from shadefit.figures.style import ERRORS, VALUES
 from shadefit.figures.values import kind_of, quantities, tables_of
 

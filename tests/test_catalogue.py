@@ -11,6 +11,7 @@ from coefficients.catalogue import (
     FOLDER,
     PUBLISHED,
     QUANTITIES,
+    SINGLE_FORMS,
     corrected,
     form_of,
     from_fit,
@@ -19,9 +20,8 @@ from coefficients.catalogue import (
     names_of_best,
 )
 from coefficients.table import parse, read, serialise
-from fitting import PAPER_FORMS, Certificate, Errors, Fit, QuadraticQ, RationalG
+from fitting import Certificate, Errors, Fit, QuadraticQ, RationalG
 from fitting.grid import gauss_grid
-from fitting.velvet import ConservativeNorm
 
 
 def test_every_name_that_is_listed_loads():
@@ -51,7 +51,7 @@ def test_a_table_holds_a_form_of_the_shape_that_its_names_say(quantity):
     for name in (quantity, f"published/{quantity}") if quantity in PUBLISHED else (quantity,):
         table = load(name)
         form = form_of(table)
-        assert type(form) is {**PAPER_FORMS, "conservative-norm": ConservativeNorm}[table.form]
+        assert type(form) is SINGLE_FORMS[table.form]
         assert table.equation == form.equation
         assert table.coefficient_names == form.coefficient_names()
         assert np.asarray(form.coefficients).tolist() == table.coefficients

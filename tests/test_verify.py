@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from coefficients import verify
-from coefficients.shaders import EXACT_PS, Shader, exact_ps, function, shader
+from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
 from coefficients.targets import PRECISIONS, TARGETS
 from coefficients.toolchains import ToolchainError
 from coefficients.toolchains.registry import toolchain
 from coefficients.toolchains.toolchain import Toolchain
 from coefficients.verify import Check, Difference, Problem, check, corners, difference, precision_of
 from integrals import PS
-from programs.function import Parameter
+from programs.function import Parameter, function
 from shadefit.cli import main
 
 NAMES = ["ps", "g", "q", "r", "velvet", EXACT_PS]

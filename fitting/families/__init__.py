@@ -13,7 +13,6 @@ from fitting.families.ps import MAX_DEGREE, cubic_ps, one_root_ps, two_root_ps
 from fitting.families.q import STRUCTURES, pole_q
 from fitting.families.r import VARIABLES, monomial_r
 from fitting.form import Form
-from fitting.velvet import ConservativeNorm
 
 MAX_EXPONENT = 7
 MAX_MONOMIALS = 36
@@ -58,7 +57,6 @@ FAMILIES = {
         cubic_ps,
         {"steps": range(5), "degree": range(-1, MAX_DEGREE + 1), "least_alpha": "alpha"},
     ),
-    "conservative-norm": Family(lambda: ConservativeNorm, {}),
 }
 
 

@@ -11,12 +11,12 @@ from matplotlib.lines import Line2D
 from coefficients.catalogue import load
 from coefficients.compare import compare
 from coefficients.cost import count
-from coefficients.shaders import exact_ps, function, shader
+from coefficients.shaders import exact_ps, shader
 from fitting import off_grid_reference
 from integrals import INTEGRALS
 from integrals.g import ambient_scattering
 from integrals.q import average_penetration
-from programs.function import Function, Parameter
+from programs.function import Function, Parameter, function
 from programs.program import evaluate
 from programs.trace import trace
 from shadefit.figures.style import COLOURS, KINDS, MARKERS
