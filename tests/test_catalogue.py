@@ -101,7 +101,7 @@ def test_what_is_no_name_and_no_file_is_refused_in_one_line(name, tmp_path, monk
 
 
 def test_a_refusal_says_what_is_allowed():
-    with pytest.raises(ValueError, match="'s': allowed are ps, g, q, r, published/ps"):
+    with pytest.raises(ValueError, match="'s': allowed are ps, g, q, r, velvet, published/ps"):
         load("s")
 
 
