@@ -33,7 +33,9 @@ def run(
     """
     chosen = selection(names)
     if given and "velvet" in chosen:
-        raise ValueError(f"velvet has a goal of its own:{_options(given)} is for the others")
+        if "velvet" in names:
+            raise ValueError(f"velvet has a goal of its own:{_options(given)} is for the others")
+        chosen.remove("velvet")
     folders = [out or (BEST if name.startswith("best/") else REFITS) for name in chosen]
     for folder in set(folders):
         require_writable(folder)
