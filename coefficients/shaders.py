@@ -81,7 +81,7 @@ def shader(name: str, precision: str = "float", function_name: str | None = None
         chosen = {} if function_name is None else {"name": function_name}
         return Shader(
             f"{PS.symbol}, {PS.meaning}",
-            "closed form, root by tangent steps",
+            "closed form, root by Newton's steps",
             PS,
             (replace(PS.axes[0], lower=LEAST_EXACT_ALPHA, open_below=False), *PS.axes[1:]),
             exact_ps(precision, **chosen),

@@ -13,7 +13,7 @@ from jax import Array
 from integrals.integral import Axis, Estimate, Integral, leg
 from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
 from integrals.quadrature import checked_rule, gauss_legendre
-from integrals.root import at_least, positive_root
+from integrals.root import at_least, magnitude, newton_step, positive_root, tangent_step
 from shading import (
     direction,
     fiber_direction,
@@ -34,9 +34,13 @@ PHI = Axis("phi", "φ", "rad", -2 * np.pi, 2 * np.pi, "azimuth of the light from
 AXES = (ALPHA, THETA_F, THETA_U, PHI)
 
 
-# Steps of the root's iteration that reach float64 (5) and float32 (3): tests/test_ps.py.
-FLOAT64_STEPS = 5
-FLOAT32_STEPS = 3
+# Newton's steps that reach float64 (4) and float32 (2): tests/test_ps.py.
+FLOAT64_STEPS = 4
+FLOAT32_STEPS = 2
+# Steps for a general matrix, whose start may be far above the root.
+GENERAL_STEPS = 10
+# The start guesses λ by p/2 + √(p²/4 + WIDTH α²): this makes the error after two steps least.
+WIDTH = 0.42
 
 # Below, P_s at angles that float64 can hold is at its limit, and α⁶ leaves the range.
 LEAST_ALPHA = 1e-50
@@ -58,42 +62,45 @@ def scattered_fraction(
     The normals that reflect u upwards fill an elliptic cone. Mapped to the unit sphere of the
     SGGX ellipsoid and projected along the light, it covers the part 1 − P_s of the visible disk:
 
-        1 − P_s = λ² √((λ + c)(λ + α²c/σ²)) / (2λ³ + Aλ² + α²c),
+        1 − P_s = λ² √((λ + c)(λ + m/σ_u²)) / (2λ³ + Aλ² + m),
 
-    with c = u·n, a = u·t, b = n·t, κ = 1 − α², σ² = 1 − κa², A = α²c + 2κab and λ the positive
-    root of λ³ + Aλ² − (1 − κ(a² + b²))λ − α²c. docs/closed-form.md has the proof. The floors are
-    theorems about the exact terms; they only keep rounding in float32 from leaving the domain.
+    with c = u·n, a = u·t, b = n·t, κ = 1 − α², σ_u² = 1 − κa², σ_n² = 1 − κb², m = α²c, T = κab,
+    S = σ_u σ_n, A = m + 2T, E = S² − T², and λ in (0, 1] the positive root of
+
+        λ (λ − S + T)(λ + S + T) = m (1 − λ²),  that is  λ³ + Aλ² − Eλ − m = 0.
+
+    docs/closed-form.md has the proof, and why so few of Newton's steps suffice from this start.
+    The floors are theorems: they only keep rounding, and cosines of no unit vectors, from 0/0.
 
     `sin2_ut` and `sin2_nt` are 1 − (u·t)² and 1 − (n·t)², for callers that know them better than
     the rounded cosines do: P_s depends on their ratio to α². α is raised to `least_alpha`, below
     which α⁴ leaves the range of float32.
     """
-    # notation: c, a, b, α, κ, σ, A, λ as above; E = 1 − κ(a² + b²), m = α²c.
+    # notation: c, a, b, α, κ, T, S, m as above; p = S − T, r = S + T; A and E by their powers of λ.
     c, a, b, alpha = map(jnp.asarray, (cos_un, cos_ut, cos_nt, alpha))
-    alpha = at_least(alpha, least_alpha)
+    c, alpha = magnitude(c), at_least(alpha, least_alpha)
     alpha2 = alpha * alpha
-    kappa = (1 - alpha) * (1 + alpha)
-    a_b = a * b
+    kappa = 1 - alpha2
     # 1 − a² as a product: its relative accuracy is what α² is weighed against.
-    sin2_ut = at_least((1 - a) * (1 + a) if sin2_ut is None else jnp.asarray(sin2_ut), 0.0)
-    sin2_nt = at_least((1 - b) * (1 + b) if sin2_nt is None else jnp.asarray(sin2_nt), 0.0)
-    sin2_sin2 = sin2_ut * sin2_nt
+    sin2_ut = magnitude((1 - a) * (1 + a) if sin2_ut is None else jnp.asarray(sin2_ut))
+    sin2_nt = magnitude((1 - b) * (1 + b) if sin2_nt is None else jnp.asarray(sin2_nt))
     sigma2 = alpha2 + kappa * sin2_ut
-    m = alpha2 * c
-    half_a = kappa * a_b + m / 2
-    half_e = (alpha2 + kappa * (sin2_sin2 - a_b * a_b)) / 2
-    # Start: with the root −c of the coplanar case split off, λ² − 2hλ − α² = κ gram λ/(λ + c)
-    # exactly, where gram is the Gram determinant of u, n, t; the right side takes a guess of λ.
-    gram = at_least(sin2_sin2 - (c - a_b) * (c - a_b), 0.0)
-    guess = at_least(1 - 0.7 * kappa * jnp.abs(a + b), alpha)
-    h = kappa * (c / 2 - a_b)
-    start = h + jnp.sqrt(h * h + (alpha2 + kappa * gram * guess / (guess + c)))
-    root = positive_root(half_a, half_e, m, start, alpha, steps)
-    root = at_least(root, alpha2)
-    half_b = at_least(half_a + root, alpha)
+    t = kappa * (a * b)
+    s = jnp.sqrt(sigma2 * (alpha2 + kappa * sin2_nt))
+    # All else is made of p, r and m, none of which cancels to more than its own rounding: the
+    # cubic that is solved is exact for slightly other ones. Of unit vectors r is never negative;
+    # for other arguments its magnitude keeps the root simple.
+    p, r, m = s - t, magnitude(s + t), alpha2 * c
+    square, linear = m + (r - p), p * r
+    # Start: the factor λ + S + T takes a guess of λ, and the quadratic that is left is solved.
+    half_p = p / 2
+    frozen = r + (half_p + jnp.sqrt(half_p * half_p + WIDTH * alpha2))
+    h, divisor = half_p * frozen, frozen + m
+    start = at_least((h + jnp.sqrt(h * h + m * divisor)) / divisor, alpha2)
+    root = at_least(positive_root(square, linear, m, start, newton_step, steps), alpha2)
     root2 = root * root
     ellipse = root2 * jnp.sqrt((root + c) * (root + m / sigma2))
-    return 1 - ellipse / ((half_b + half_b) * root2 + m)
+    return 1 - ellipse / ((root + square + root) * root2 + m)
 
 
 def sggx_scattered_fraction(matrix: Matrix, light: Vector) -> Array:
@@ -114,7 +121,7 @@ def sggx_scattered_fraction(matrix: Matrix, light: Vector) -> Array:
     e3 = jnp.linalg.det(matrix) * cos_un
     sigma2 = light @ matrix @ light
     upper_bound = normal @ matrix @ light + jnp.sqrt(sigma2 * (normal @ matrix @ normal))
-    root = positive_root(-e1 / 2, -e2 / 2, e3, upper_bound, 0.0, 2 * FLOAT64_STEPS)
+    root = positive_root(-e1, -e2, e3, upper_bound, tangent_step, GENERAL_STEPS)
     seen = matrix @ light
     image = cone @ seen
     first, second = seen @ image / sigma2, image @ matrix @ image / sigma2  # ẑᵀCẑ, ẑᵀC²ẑ

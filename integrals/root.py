@@ -1,10 +1,13 @@
 """The positive root of the cubic behind P_s, differentiable on the whole closed domain."""
 
 import functools
+from collections.abc import Callable
 
 import jax
 import jax.numpy as jnp
 from jax import Array
+
+Step = Callable[[Array, Array, Array, Array], Array]
 
 
 @jax.custom_jvp
@@ -22,31 +25,52 @@ def _own_derivative(primals, tangents):
     return at_least(*primals), tangents[0]
 
 
-@functools.partial(jax.custom_jvp, nondiff_argnums=(5,))
-def positive_root(
-    half_a: Array, half_e: Array, m: Array, start: Array, floor: Array | float, steps: int
-) -> Array:
+@jax.custom_jvp
+def magnitude(value: Array) -> Array:
+    """Give |value| of what only rounding makes negative; the derivative is the value's own."""
+    return jnp.abs(value)
+
+
+magnitude.defjvp(lambda primals, tangents: (magnitude(*primals), tangents[0]))
+
+
+def newton_step(root: Array, a: Array, e: Array, m: Array) -> Array:
+    """Follow the tangent of the cubic: of a relative error ε above the root at most 2ε² is left.
+
+    λ − f/f′ is written as one quotient, whose numerator is a sum of positive terms.
+    """
+    product = (root + a) * root
+    rising = root * root + product
+    return (rising * root + m) / (rising + (product - e))
+
+
+def tangent_step(root: Array, a: Array, e: Array, m: Array) -> Array:
+    """Replace λ² in λ·λ² by its tangent 2sλ − s² at s, and solve the quadratic that remains.
+
+    Converges quadratically for starts that are far too large, too.
+    """
+    b, d = root + root + a, e + root * root
+    return (d + jnp.sqrt(d * d + 4 * b * m)) / (b + b)
+
+
+@functools.partial(jax.custom_jvp, nondiff_argnums=(4, 5))
+def positive_root(a: Array, e: Array, m: Array, start: Array, step: Step, steps: int) -> Array:
     """Give the largest root of λ³ + Aλ² − Eλ − m, with one positive root and m ≥ 0.
 
-    `half_a` = A/2, `half_e` = E/2. Each step replaces λ² in λ·λ² by its tangent 2sλ − s² at the
-    current s and solves the quadratic that remains: unlike Newton's, it converges quadratically
-    for a small root too. After the first step the iterates fall monotonically. `floor` is a known
-    lower bound of A/2 + λ that keeps rounding from dividing by zero. The derivative is the
-    implicit one.
+    Arguments: `a` = A, `e` = E and `m`; `start`, a guess; `step`, one of the above, and how many
+    `steps` are taken. From above the root the iterates of both fall monotonically. The derivative
+    is the implicit one, whatever the start.
     """
     root = start
     for _ in range(steps):
-        half_b = at_least(half_a + root, floor)
-        half_d = half_e + root * root / 2
-        root = (half_d + jnp.sqrt(half_d * half_d + half_b * (m + m))) / (half_b + half_b)
+        root = step(root, a, e, m)
     return root
 
 
 @positive_root.defjvp
-def _implicit(steps, primals, tangents):
-    half_a, half_e = primals[:2]
-    d_half_a, d_half_e, d_m = tangents[:3]
-    root = positive_root(*primals, steps)
-    slope = (3 * root + 4 * half_a) * root - 2 * half_e
-    change = -2 * d_half_a * root * root + 2 * d_half_e * root + d_m
-    return root, change / slope
+def _implicit(step, steps, primals, tangents):
+    a, e = primals[:2]
+    d_a, d_e, d_m = tangents[:3]
+    root = positive_root(*primals, step, steps)
+    change = (d_e - d_a * root) * root + d_m
+    return root, change / ((3 * root + 2 * a) * root - e)

@@ -101,7 +101,10 @@ def test_second_derivatives_are_finite_symmetric_and_those_of_finite_differences
     points = np.concatenate([resolved, corners(1e-3, 0.5)[:, ::2]], axis=1)
     second = hessian()(points)
     assert np.isfinite(second).all()
-    np.testing.assert_allclose(second, second.swapaxes(0, 1), rtol=1e-9, atol=1e-9)
+    # The largest of a point's second derivatives grows like 1/α²; its roundings reach the others.
+    rounding = 8 * np.finfo(float).eps * abs(second).max(axis=(0, 1))
+    asymmetry = abs(second - second.swapaxes(0, 1))
+    assert np.all(asymmetry <= 1e-9 * (1 + abs(second)) + rounding)
     expected = differences(gradient("closed_form", jax.grad), resolved)
     miss = second[..., : resolved.shape[1]] - expected
     assert np.all(abs(miss) < 10 * DIFFERENCES / resolved[0] ** 3)

@@ -305,7 +305,7 @@ def test_cost_counts_beside_the_closed_form(capsys):
     assert (rows["FuzzPs"]["mul"], rows["FuzzPs"]["add"]) == (8, 5)
     assert rows["CalcFuzzPsCoeffs"]["div"] == 6
     # One each step of the root, one each in its start, in σ² and at the end.
-    assert rows["FuzzPsExact"]["div"] == 6 and rows["FuzzPsExact"]["transcendental"] == 0
+    assert rows["FuzzPsExact"]["div"] == 5 and rows["FuzzPsExact"]["transcendental"] == 0
     assert rows["FuzzPs"]["throughput"] is None
     assert "exact/ps" in run(capsys, "cost", "ps")[1]
     assert "No exact form" in run(capsys, "cost", "g")[1]
