@@ -76,7 +76,7 @@ def scattered_fraction(
     the rounded cosines do: P_s depends on their ratio to α². α is raised to `least_alpha`, below
     which α⁴ leaves the range of float32.
     """
-    # notation: c, a, b, α, κ, T, S, m as above; p = S − T, r = S + T; A and E by their powers of λ.
+    # notation: c, a, b, α, κ, T, S, m as above; p = S − T, r = S + T; A and E have those names.
     c, a, b, alpha = map(jnp.asarray, (cos_un, cos_ut, cos_nt, alpha))
     c, alpha = magnitude(c), at_least(alpha, least_alpha)
     alpha2 = alpha * alpha
@@ -90,17 +90,21 @@ def scattered_fraction(
     # All else is made of p, r and m, none of which cancels to more than its own rounding: the
     # cubic that is solved is exact for slightly other ones. Of unit vectors r is never negative;
     # for other arguments its magnitude keeps the root simple.
-    p, r, m = s - t, magnitude(s + t), alpha2 * c
-    square, linear = m + (r - p), p * r
+    p = s - t
+    r = magnitude(s + t)
+    m = alpha2 * c
+    coeff_a = m + (r - p)
+    coeff_e = p * r
     # Start: the factor λ + S + T takes a guess of λ, and the quadratic that is left is solved.
     half_p = p / 2
     frozen = r + (half_p + jnp.sqrt(half_p * half_p + WIDTH * alpha2))
-    h, divisor = half_p * frozen, frozen + m
+    h = half_p * frozen
+    divisor = frozen + m
     start = at_least((h + jnp.sqrt(h * h + m * divisor)) / divisor, alpha2)
-    root = at_least(positive_root(square, linear, m, start, newton_step, steps), alpha2)
+    root = at_least(positive_root(coeff_a, coeff_e, m, start, newton_step, steps), alpha2)
     root2 = root * root
     ellipse = root2 * jnp.sqrt((root + c) * (root + m / sigma2))
-    return 1 - ellipse / ((root + square + root) * root2 + m)
+    return 1 - ellipse / ((root + coeff_a + root) * root2 + m)
 
 
 def sggx_scattered_fraction(matrix: Matrix, light: Vector) -> Array:

@@ -113,7 +113,11 @@ def _header(
         head["Arguments"] = chosen.remark
     own = None
     if chosen.form is None:
-        head["Error in exact arithmetic"] = "none: it is the integral"
+        # The same points and steps, without the precision's roundings.
+        left = problem.against_integral(Problem(chosen, "double").form)
+        head["Error in exact arithmetic"] = (
+            f"none but what the root's steps leave: {text_of(left)} (in float64)"
+        )
     else:
         errors = off_grid_errors(chosen.form)
         own = Difference(errors.largest, errors.rms)

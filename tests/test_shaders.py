@@ -258,3 +258,10 @@ def test_the_header_says_when_half_is_not_good_enough(few_points):
     assert "NOT GOOD ENOUGH" in export.code("published/ps", "python", "half")
     assert "NOT GOOD ENOUGH" not in export.code("q", "python", "half")
     assert "precision: " not in export.code("published/ps", "python", "float")
+
+
+@pytest.mark.parametrize(("precision", "most"), [("float", 2e-7), ("double", 4e-15)])
+def test_the_closed_forms_header_says_what_its_steps_leave(few_points, precision, most):
+    text = " ".join(export.code(EXACT_PS, "python", precision).replace("#", "").split())
+    left = re.search(r"none but what the root's steps leave: rms (\S+), largest (\S+) ", text)
+    assert 0 < float(left[1]) < float(left[2]) < most
