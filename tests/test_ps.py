@@ -267,9 +267,17 @@ def test_float32_gives_numbers_even_for_cosines_of_no_geometry():
     c, a, b = rng.uniform([0, -1, -1], [1, 1, 1], (200_000, 3)).T.astype(np.float32)
     alpha = (10 ** rng.uniform(-30, 0, 200_000)).astype(np.float32)
     assert jnp.isfinite(fraction(FLOAT32_STEPS)(c, a, b, alpha)).all()
-    # Clamped and rounded ones, among them 0.6² + 0.8² = 1, where two roots vanish with u·n and α.
-    ends = [0.0, 0.6, 0.8, 1.0, 1 + FLOAT32_EPS]
-    both = [*ends, *np.negative(ends)]
-    grid = np.meshgrid([0.0, -FLOAT32_EPS, 1e-6, 1.0], both, both, [1e-30, 1e-6, 1e-3, 0.05, 1.0])
+    # Clamped and rounded ones.
+    ends = [0.0, 0.6, 1.0, 1 + FLOAT32_EPS]
+    both, alphas = [*ends, *np.negative(ends)], [1e-30, 1e-6, 1e-4, 1e-3, 0.05, 1.0]
+    grid = np.meshgrid([0.0, -FLOAT32_EPS, 1e-6, 1.0], both, both, alphas)
     values = fraction(FLOAT32_STEPS)(*(axis.ravel().astype(np.float32) for axis in grid))
+    assert jnp.isfinite(values).all()
+
+
+def test_float32_gives_numbers_where_two_roots_vanish():
+    """At u·n = 0 in the plane of n and t, as α → 0: there S − T may be rounded to zero."""
+    theta_f, alpha = np.meshgrid(np.linspace(0, RIGHT, 2001), [1e-30, 1e-5, 1e-4, 1e-3, 0.05])
+    axes = (np.zeros_like(alpha), np.sin(theta_f), np.cos(theta_f), alpha)
+    values = fraction(FLOAT32_STEPS)(*(axis.ravel().astype(np.float32) for axis in axes))
     assert jnp.isfinite(values).all()
