@@ -5,12 +5,13 @@ from there, so that an interrupted search goes on where it stopped.
 """
 
 import hashlib
+import itertools
 import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from coefficients.catalogue import PUBLISHED, from_fit, load
+from coefficients.catalogue import PUBLISHED, form_of, from_fit, load, names_of_best
 from coefficients.compare import compare
 from coefficients.cost import count
 from coefficients.shaders import functions_of
@@ -18,6 +19,7 @@ from coefficients.table import SCHEMA, Table, read, serialise, write_whole, writ
 from fitting import Form, Goal, improve
 from fitting.families import candidates
 from fitting.grow import grown_r
+from integrals import R
 from programs.trace import trace
 from shadefit.figures.search import draw
 from shadefit.refit import require_writable
@@ -111,7 +113,12 @@ def frontier(found: list[Found]) -> list[Found]:
 
 
 def _candidates(quantity: str, least_alpha: float) -> Iterator[type[Form]]:
-    return grown_r(least_alpha) if quantity == "r" else candidates(quantity, least_alpha)
+    if quantity != "r":
+        return candidates(quantity, least_alpha)
+    # The best sets of monomials that are known are not all on the way of a greedy choice.
+    known = [type(form_of(load(name))) for name in names_of_best()]
+    sets = [form for form in known if form.integral is R and form.axes[0].lower == least_alpha]
+    return itertools.chain(sets, grown_r(least_alpha))
 
 
 def _name(form: type[Form], goal: Goal) -> str:
