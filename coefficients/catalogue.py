@@ -6,6 +6,7 @@ import platform
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -131,6 +132,7 @@ def from_fit(fit: Fit, command: str, name: str | None = None) -> Table:
         "certificates": {
             "denominator_bound": _finite(fit.certificate.bound),
             "boxes": fit.certificate.boxes,
+            **_known("range", fit.range and [fit.range.lower, fit.range.upper]),
             **_known("least_error", fit.lower_bound),
             **_known("conservative_bound", fit.conservative_bound),
         },
@@ -169,7 +171,7 @@ def _errors(errors) -> dict:
     }
 
 
-def _known(name: str, value: float | None) -> dict:
+def _known(name: str, value: Any) -> dict:
     return {} if value is None else {name: value}
 
 

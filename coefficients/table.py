@@ -97,13 +97,15 @@ class ErrorRecords(_Part):
 class Certificates(_Part):
     """Proven on the whole domain: a lower bound of every denominator (None: there is none).
 
-    No coefficients of the form have a largest error below `least_error`, where it is known. Where
+    Every value is within `range`, and that to 1e-12 within [0, 1] (None: it is not proven). No
+    coefficients of the form have a largest error below `least_error`, where it is known. Where
     `conservative_bound` is positive, no value is above the exact one: it is a lower bound of what
     the form leaves (fitting/velvet.py).
     """
 
     denominator_bound: Number | None = None
     boxes: Annotated[int, Field(ge=0)]
+    range: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
     least_error: Annotated[Number, Field(ge=0)] | None = None
     conservative_bound: Number | None = None
 

@@ -42,7 +42,7 @@ def certify_denominators(form: Form, enough: float = np.inf) -> Certificate:
     """
     relaxed = form.relaxed()
     if relaxed is not None:
-        found = _bound_divisors(*_traced(form, *relaxed), enough)
+        found = _bound_divisors(traced(form, *relaxed), relaxed[1], enough)
         if found.holds:
             return found
     return _bound_divisors(as_program(form), form.axes, enough)
@@ -59,13 +59,14 @@ def _bound_divisors(program: Program, axes: tuple[Axis, ...], enough: float) -> 
 
 def as_program(form: Form) -> Program:
     """Trace a form, its coefficients constants, as a function of its axes."""
-    return _traced(form, type(form)(np.asarray(form.coefficients)), form.axes)[0]
+    return traced(form, type(form)(np.asarray(form.coefficients)), form.axes)
 
 
-def _traced(form: Form, call, axes: tuple[Axis, ...]) -> tuple[Program, tuple[Axis, ...]]:
+def traced(form: Form, call, axes: tuple[Axis, ...], results: int | None = None) -> Program:
+    """Trace a function of a form on some axes: of a scalar, or of a tuple of `results`."""
     parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
     summary = f"{form.integral.symbol} by {form.equation}"
-    return trace(Function(form.integral.name, summary, parameters, None, "value", call)), axes
+    return trace(Function(form.integral.name, summary, parameters, results, "value", call))
 
 
 def divisors(program: Program) -> Program:
@@ -88,8 +89,8 @@ def bound_below(
     """
     low, high = lower[None], upper[None]
     # An input that the outputs do not depend on is never split.
-    split = np.array([k in reached(program) for k in range(len(lower))]) & (upper > lower)
-    scale = np.where(split, upper - lower, np.inf)
+    used = np.array([k in reached(program) for k in range(len(lower))]) & (upper > lower)
+    scale = np.where(used, upper - lower, np.inf)
     # No box's middle is a corner of the domain, where a denominator is often least.
     corners = np.array(list(product(*zip(lower, upper, strict=True))))
     attained, proven, boxes = evaluate(program, corners).min(), np.inf, 0
@@ -103,7 +104,8 @@ def bound_below(
         bounds = np.min([each.lower for each in enclose(program, low, high)], axis=0)
         done = bounds >= min(TIGHTNESS * attained, enough)
         proven = min(proven, bounds[done].min(initial=np.inf))
-        low, high = _halved(low[~done], high[~done], scale)
+        low, high = low[~done], high[~done]
+        low, high = split(low, high, (high - low) / scale)
     return Certificate(float(proven), boxes)
 
 
@@ -117,9 +119,9 @@ def reached(program: Program) -> set[int]:
     return needed
 
 
-def _halved(low: np.ndarray, high: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Split every box in two along its longest side, relative to the domain's."""
-    side = np.argmax((high - low) / scale, axis=1)
+def split(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Split every box in two along its longest side: of those of largest `size` (boxes, inputs)."""
+    side = np.argmax(size, axis=1)
     rows = np.arange(len(low))
     middle = (low[rows, side] + high[rows, side]) / 2
     left_high, right_low = high.copy(), low.copy()

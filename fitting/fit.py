@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from fitting.bounds import Range, certify_range
 from fitting.cells import DIRECTIONS_PER_ANGLE, fit_cells, largest_error
 from fitting.certificate import Certificate, certify_denominators
 from fitting.errors import Errors, exact_estimates, form_values, measure, off_grid_errors
@@ -27,7 +28,8 @@ class Fit:
 
     `directions` is the number of lights a node (0 where the integral has none). No coefficients of
     the form have a largest error below `lower_bound`, where one is known; where
-    `conservative_bound` is positive, no value is above the exact one.
+    `conservative_bound` is positive, no value is above the exact one. `range` is None where the
+    values are not shown to lie between 0 and 1.
     """
 
     form: Form
@@ -41,6 +43,7 @@ class Fit:
     certificate: Certificate
     goal: Goal = LEAST_SQUARES
     lower_bound: float | None = None
+    range: Range | None = None
     conservative_bound: float | None = None
 
 
@@ -124,6 +127,7 @@ def _judged(form, grid, weight, directions, solver, reference_error, on_grid) ->
         on_grid=on_grid,
         off_grid=off_grid_errors(form),
         certificate=certify_denominators(form),
+        range=certify_range(form),
     )
 
 

@@ -55,6 +55,13 @@ class Form(eqx.Module):
         """
         return None
 
+    def margins(self) -> tuple[Callable[..., tuple[Array, ...]], tuple[Axis, ...]] | None:
+        """Give what is nowhere negative only if all values are from 0 to 1, and its axes.
+
+        None where nothing is known that is easier to bound than the values themselves.
+        """
+        return None
+
     def positive(self, *arguments) -> Array:
         """Give what must stay positive at one point for the form to have no pole and no NaN."""
         return jnp.ones(())

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from fitting.bounds import certify_range
 from fitting.certificate import certify_denominators
 from fitting.errors import check_reference, form_values, measure, off_grid_errors
 from fitting.fit import Fit, Progress
@@ -95,6 +96,7 @@ def improve(
         certificate=certificate,
         goal=goal,
         lower_bound=bound,
+        range=certify_range(fitted),
     )
 
 

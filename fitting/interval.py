@@ -34,21 +34,26 @@ def enclose(program: Program, lower: np.ndarray, upper: np.ndarray) -> list[Inte
     Both the natural extension and the mean value form are taken, and intersected. Raises
     ValueError for an operation that has no interval version.
     """
+    return [each.value for each in enclose_with_slopes(program, lower, upper)]
+
+
+def enclose_with_slopes(program: Program, lower: np.ndarray, upper: np.ndarray) -> list[Enclosure]:
+    """Give the same bounds with those of the natural extension's derivatives."""
     inputs = [_variable(k, lower, upper) for k in range(lower.shape[1])]
     middle = (lower + upper) / 2
-    centre = [_variable(k, middle, middle) for k in range(lower.shape[1])]
+    centre = [Interval(x, x) for x in middle.T]
     with np.errstate(all="ignore"):
         natural = interpret(program, inputs, _OPERATIONS, lambda c: _constant(c, lower))
-        central = interpret(program, centre, _OPERATIONS, lambda c: _constant(c, lower))
-        offsets = [
-            _sub(Interval(lower[:, k], upper[:, k]), Interval(middle[:, k], middle[:, k]))
-            for k in range(lower.shape[1])
+        central = interpret(program, centre, _VALUES, lambda c: _number(c, lower))
+        offsets = [_sub(whole.value, x) for whole, x in zip(inputs, centre, strict=True)]
+        return [
+            Enclosure(_mean_value(n, c, offsets), n.gradient)
+            for n, c in zip(natural, central, strict=True)
         ]
-        return [_mean_value(n, c, offsets) for n, c in zip(natural, central, strict=True)]
 
 
-def _mean_value(natural: Enclosure, central: Enclosure, offsets: list[Interval]) -> Interval:
-    total = central.value
+def _mean_value(natural: Enclosure, central: Interval, offsets: list[Interval]) -> Interval:
+    total = central
     for k, offset in enumerate(offsets):
         slope = Interval(natural.gradient.lower[k], natural.gradient.upper[k])
         total = _add(total, _mul(slope, offset))
@@ -63,9 +68,14 @@ def _variable(index: int, lower: np.ndarray, upper: np.ndarray) -> Enclosure:
     return Enclosure(Interval(lower[:, index], upper[:, index]), Interval(slope, slope))
 
 
+def _number(value: float, like: np.ndarray) -> Interval:
+    number = np.full(len(like), float(value))
+    return Interval(number, number)
+
+
 def _constant(value: float, like: np.ndarray) -> Enclosure:
-    number, slope = np.full(len(like), float(value)), np.zeros((like.shape[1], len(like)))
-    return Enclosure(Interval(number, number), Interval(slope, slope))
+    slope = np.zeros((like.shape[1], len(like)))
+    return Enclosure(_number(value, like), Interval(slope, slope))
 
 
 def _outward(lower: np.ndarray, upper: np.ndarray, ulps: int = 1) -> Interval:
@@ -172,29 +182,25 @@ def _quotient(a: Enclosure, b: Enclosure) -> Enclosure:
     return _product(a, _inverse(b))
 
 
-def _hull_of(a: Enclosure, b: Enclosure) -> Enclosure:
-    return Enclosure(_hull(a.value, b.value), _hull(a.gradient, b.gradient))
-
-
-def _max(a: Enclosure, b: Enclosure) -> Enclosure:
+def _max(a: Interval, b: Interval) -> Interval:
     # A lower bound of one is a lower bound of the larger, even if nothing is known of the other.
-    value = Interval(
-        np.fmax(a.value.lower, b.value.lower), np.maximum(a.value.upper, b.value.upper)
-    )
-    return Enclosure(value, _hull(a.gradient, b.gradient))
+    return Interval(np.fmax(a.lower, b.lower), np.maximum(a.upper, b.upper))
 
 
-def _min(a: Enclosure, b: Enclosure) -> Enclosure:
-    value = Interval(
-        np.minimum(a.value.lower, b.value.lower), np.minimum(a.value.upper, b.value.upper)
-    )
-    return Enclosure(value, _hull(a.gradient, b.gradient))
+def _min(a: Interval, b: Interval) -> Interval:
+    return Interval(np.minimum(a.lower, b.lower), np.minimum(a.upper, b.upper))
+
+
+def _either(image):
+    """Lift a choice of one of two."""
+    return lambda a, b: Enclosure(image(a.value, b.value), _hull(a.gradient, b.gradient))
 
 
 def _undecided(*_) -> None:
     """Leave a comparison open: a selection takes the hull of both its sides."""
 
 
+_CONDITIONS = dict.fromkeys(("lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not"), _undecided)
 _OPERATIONS = {
     "add": _linear(_add),
     "sub": _linear(_sub),
@@ -206,8 +212,25 @@ _OPERATIONS = {
     "log": _unary(_LOG, lambda x, _: _reciprocal(x)),
     "cos": _unary(_cos, lambda x, _: _neg(_sin(x))),
     "sin": _unary(_sin, lambda x, _: _cos(x)),
+    "max": _either(_max),
+    "min": _either(_min),
+    "select": lambda _, a, b: _either(_hull)(a, b),
+    **_CONDITIONS,
+}
+# The same of values alone.
+_VALUES = {
+    "add": _add,
+    "sub": _sub,
+    "mul": lambda a, b: _square(a) if a is b else _mul(a, b),
+    "div": lambda a, b: _mul(a, _reciprocal(b)),
+    "neg": _neg,
+    "sqrt": _sqrt,
+    "exp": _EXP,
+    "log": _LOG,
+    "cos": _cos,
+    "sin": _sin,
     "max": _max,
     "min": _min,
-    "select": lambda _, a, b: _hull_of(a, b),
-    **dict.fromkeys(("lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not"), _undecided),
+    "select": lambda _, a, b: _hull(a, b),
+    **_CONDITIONS,
 }

@@ -33,9 +33,15 @@ class MaterialForm(Form):
         """Give what must stay positive for a material at u·n and u·t."""
         return jnp.ones(())
 
+    def margins_along(
+        self, m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar
+    ) -> tuple[Array, ...]:
+        """Give what is not negative for any light of a material only if 0 ≤ P̃_s ≤ 1."""
+        raise NotImplementedError
+
     def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Evaluate P̃_s at one material and one direction of light."""
-        cosines = _cosines(theta_f, theta_u, phi)
+        cosines = _cosines(theta_f, theta_u, jnp.cos(phi))
         return self.along(self.material(alpha, theta_f), *cosines)
 
     def relaxed(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
@@ -50,15 +56,25 @@ class MaterialForm(Form):
 
         return value, (*self.axes[:2], *cosines)
 
+    def margins(self) -> tuple[Callable[..., tuple[Array, ...]], tuple[Axis, ...]]:
+        """Give the margins of all directions, by the cosine of the azimuth."""
+        cosine = Axis("cos_phi", "cos φ", "1", -1.0, 1.0, "cosine of the light's azimuth")
+
+        def margins(alpha, theta_f, theta_u, cos_phi):
+            cosines = _cosines(theta_f, theta_u, cos_phi)
+            return self.margins_along(self.material(alpha, theta_f), jnp.cos(theta_f), *cosines)
+
+        return margins, (*self.axes[:3], cosine)
+
     def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Give the radicand or denominator that a fit could make negative."""
-        cosines = _cosines(theta_f, theta_u, phi)
+        cosines = _cosines(theta_f, theta_u, jnp.cos(phi))
         return self.positive_along(self.material(alpha, theta_f), *cosines)
 
 
-def _cosines(theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> tuple[Array, Array]:
+def _cosines(theta_f: Scalar, theta_u: Scalar, cos_phi: Scalar) -> tuple[Array, Array]:
     cos_un = jnp.cos(theta_u)
-    in_plane = jnp.sin(theta_u) * jnp.cos(phi) * jnp.sin(theta_f)
+    in_plane = jnp.sin(theta_u) * cos_phi * jnp.sin(theta_f)
     return cos_un, in_plane + cos_un * jnp.cos(theta_f)
 
 

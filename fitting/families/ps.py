@@ -39,6 +39,9 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> type[Form]:
     """
     surfaces = ["u0", "u1", "u2", "u3", "u4", "u5"][: 6 if skew else 4]
 
+    def _above(m, c, a):
+        return m[0] * c + a * (m[1] + m[6] * c) if skew else m[0] * c + m[1] * a
+
     class OneRootPs(MaterialForm):
         """P̃_s = ½ + (m₀c + m₁a [+ m₆ca]) / √(m₂ + m₃c + m₄a² [+ m₅ca]); ½ at α = 1."""
 
@@ -62,14 +65,20 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> type[Form]:
         def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
             """Evaluate P̃_s of a material at u·n and u·t."""
             c, a = cos_un, cos_ut
-            above = m[0] * c + a * (m[1] + m[6] * c) if skew else m[0] * c + m[1] * a
-            return 0.5 + above / jnp.sqrt(self.positive_along(m, c, a))
+            return 0.5 + _above(m, c, a) / jnp.sqrt(self.positive_along(m, c, a))
 
         def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
             """Give the radicand."""
             c, a = cos_un, cos_ut
             curved = a * (m[4] * a + m[5] * c) if skew else m[4] * a * a
             return m[2] + m[3] * c + curved
+
+        def margins_along(
+            self, m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar
+        ) -> tuple[Array, ...]:
+            """Give the radicand less the square of twice what is divided by its root."""
+            twice = 2 * _above(m, cos_un, cos_ut)
+            return (self.positive_along(m, cos_un, cos_ut) - twice * twice,)
 
         @classmethod
         def coefficient_names(cls) -> list:
@@ -154,6 +163,17 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> type[Form]:
             sigma, _, root = _parts(m, cos_un, cos_ut)
             return 1 + _slope(m, cos_un) * cos_un / (sigma * root)
 
+        def margins_along(
+            self, m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar
+        ) -> tuple[Array, ...]:
+            """Give m₂, t + m₃c, and a lower bound of (t/c) times P̃_s's numerator."""
+            # notation: docs/range.md; q = 1 − κb². That t ≥ 0 is clear, but not to an interval.
+            c, a = cos_un, cos_ut
+            sigma, h, root = _parts(m, c, a)
+            t, slope = jnp.maximum(h + root, 0), _slope(m, c)
+            rise = 2 / jnp.sqrt(1 - m[0] * cos_nt * cos_nt) - (2 * m[5] if terms > 3 else 0) - m[3]
+            return m[2], t + m[3] * c, t * (t * rise + 8 * slope - m[2]) + 4 * sigma * m[2]
+
         @classmethod
         def coefficient_names(cls) -> list:
             """Name the coefficients by surface and monomial."""
@@ -225,6 +245,15 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> type[Form]:
                 both = top + e
                 ellipse = (top * top - square) / root + (both + both)
             return 1 - jnp.sqrt((root + c) * (root + e / sigma2)) / jnp.maximum(ellipse, LEAST)
+
+        def margins_along(
+            self, m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar
+        ) -> tuple[Array, ...]:
+            """Give the radicand in g, if there is one: all else is proven in docs/range.md."""
+            if degree < 0:
+                return ()
+            s2, t = (1 - m[0] * cos_ut * cos_ut) * m[3], m[2] * cos_ut
+            return (s2 + t * t + m[5] * cos_un,)
 
         @classmethod
         def coefficient_names(cls) -> list:
