@@ -69,6 +69,7 @@ class GoalRecord(_Part):
     relative: bool
     side: Literal["both", "below", "above"]
     rounding: Literal["none", "float32", "float16"]
+    bounded: bool = False
 
 
 class Reference(_Part):

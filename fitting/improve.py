@@ -22,6 +22,7 @@ from fitting.grid import Weight
 from fitting.minimax import (
     Residuals,
     badness,
+    limits,
     linear_parts,
     lower_bound,
     minimise_largest,
@@ -55,7 +56,8 @@ def improve(
     """Fit a form to a goal on its sample, from its own starts or from `start`.
 
     `weight` is the measure of lights in the fit of P_s (fitting/samples.py). Raises ValueError
-    where no start gives a form without poles, and where the result has one.
+    where no start gives a form without poles, where the result has one, and where the goal is
+    bounded and the result is not shown to be.
     """
     progress(f"exact {form.integral.symbol} where {form.name} is fitted")
     sample = sample_of(form, goal, weight)
@@ -78,6 +80,12 @@ def improve(
             f"the fit of {form.name} has a denominator that is not shown to be positive "
             "on its whole domain"
         )
+    values = certify_range(fitted)
+    if goal.bounded and values is None:
+        raise ValueError(
+            f"the fit of {form.name} has values that are not shown to be between 0 and 1 "
+            "on its whole domain"
+        )
     on_grid = measure(form_values(fitted, sample.points) - sample.exact, sample.points, form)
     bound = None
     if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
@@ -96,14 +104,14 @@ def improve(
         certificate=certificate,
         goal=goal,
         lower_bound=bound,
-        range=certify_range(fitted),
+        range=values,
     )
 
 
-def _problem(form: type[Form], sample: Sample, fixed=None) -> Residuals:
+def _problem(form: type[Form], sample: Sample, goal: Goal, fixed=None) -> Residuals:
     size = int(np.size(form.coefficient_names()))
     fixed = np.full(size, np.nan) if fixed is None else fixed
-    return residuals(form, sample.points, sample.exact, sample.scale, fixed)
+    return residuals(form, sample.points, sample.exact, sample.scale, fixed, goal.bounded)
 
 
 def _linear_starts(form: type[Form], sample: Sample) -> list[np.ndarray]:
@@ -138,7 +146,7 @@ def _least_squares(form, sample: Sample, goal: Goal, starts: list[np.ndarray]) -
 
     steps = STEPS if len(starts[0]) <= MANY else STEPS_OF_MANY
     fit = jax.jit(lambda z: solve_nonlinear(residual, z, steps, rtol=1e-11, atol=1e-12))
-    problem = _problem(form, sample)
+    problem = _problem(form, sample, goal)
     ends = [np.asarray(fit(jnp.asarray(z))) if len(z) else z for z in starts]
     good = [z for z in ends if _is_good(problem, z)]
     if not good:
@@ -152,25 +160,28 @@ def _is_good(problem: Residuals, z: np.ndarray) -> bool:
 
 def _least_largest(form, sample: Sample, goal: Goal, weight, start) -> tuple[np.ndarray, Sample]:
     """Minimise the largest error, with the worst points of a finer set added in turn."""
-    found = minimise_largest(_problem(form, sample), start, goal.side)
+    found = minimise_largest(_problem(form, sample, goal), start, goal.side)
     points, exact = check_reference(form, SEED + 2)
     for _ in range(EXCHANGES if len(found) else 0):
-        finer = Sample(points, exact, sample.error, scale_at(points, exact, form, goal, weight))
-        worst = np.argsort(-badness(_problem(form, finer).values(found), goal.side))[:EXCHANGED]
+        scale = scale_at(points, exact, form, goal, weight)
+        finer = Sample(points, exact, sample.error, scale)
+        problem = _problem(form, finer, goal)
+        size = badness(problem.values(found), *limits(problem, goal.side))
+        worst = np.argsort(-size)[:EXCHANGED]
         sample = replace(
             sample,
             points=np.concatenate([sample.points, points[worst]]),
             exact=np.concatenate([sample.exact, exact[worst]]),
             scale=np.concatenate([sample.scale, finer.scale[worst]]),
         )
-        found = minimise_largest(_problem(form, sample), found, goal.side)
+        found = minimise_largest(_problem(form, sample, goal), found, goal.side)
     return found, sample
 
 
 def _rounded(form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
     """Round the coefficients, and refit those that are left after each turn."""
     dtype = PRECISIONS[goal.rounding]
-    slopes = _problem(form, sample).slopes(found, np.arange(len(sample.exact)))
+    slopes = _problem(form, sample, goal).slopes(found, np.arange(len(sample.exact)))
     # What rounding one may do to the values: most first.
     order = np.argsort(-np.abs(found) * np.max(np.abs(slopes), axis=0, initial=0.0))
     fixed = np.full(len(found), np.nan)
@@ -179,7 +190,7 @@ def _rounded(form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
         free = np.isnan(fixed)
         found = np.where(free, found, fixed)
         if free.any():
-            problem = _problem(form, sample, fixed)
+            problem = _problem(form, sample, goal, fixed)
             found[free] = _refitted(problem, found[free], goal)
     return found
 

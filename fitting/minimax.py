@@ -37,6 +37,8 @@ INFEASIBLE = 2  # linprog's status
 # What is on the wrong side counts this many times in a program, so that a start may be there, and
 # this many when points and steps are chosen.
 OVER, WRONG = 100.0, 1e5
+# Bounded values are kept this far from 0 and 1 at the points.
+ROOM = 1e-3
 # What must stay positive is kept above this at the points.
 FLOOR = 1e-3
 
@@ -45,19 +47,30 @@ FLOOR = 1e-3
 class Residuals:
     """What is made small: `values` (n,) of coefficients, `slopes` (n, m) at rows; and `positive`.
 
-    `positive` and `positive_slopes` are the same for what must stay above FLOOR.
+    `positive` and `positive_slopes` are the same for what must stay above FLOOR. `least` and `most`
+    (n,) are the lowest and the highest `values` that are allowed.
     """
 
     values: Callable[[np.ndarray], np.ndarray]
     slopes: Callable[[np.ndarray, np.ndarray], np.ndarray]
     positive: Callable[[np.ndarray], np.ndarray]
     positive_slopes: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    least: np.ndarray
+    most: np.ndarray
 
 
 def residuals(
-    form: type[Form], points: np.ndarray, exact: np.ndarray, scale: np.ndarray, fixed: np.ndarray
+    form: type[Form],
+    points: np.ndarray,
+    exact: np.ndarray,
+    scale: np.ndarray,
+    fixed: np.ndarray,
+    bounded: bool = False,
 ) -> Residuals:
-    """Give the weighted errors of a form's free coefficients; `fixed` (m,) has NaN for those."""
+    """Give the weighted errors of a form's free coefficients; `fixed` (m,) has NaN for those.
+
+    `bounded` allows no value of the form below 0 or above 1, with some room to either.
+    """
     free = np.isnan(fixed)
 
     def at(function, z, x, chunk):
@@ -65,11 +78,19 @@ def residuals(
         whole[free] = z
         return np.asarray(in_chunks(functools.partial(function, form, whole), x, chunk))
 
+    # No more room than half of what the exact value leaves: it may be 0 or 1.
+    low, high = np.minimum(ROOM, exact / 2), 1 - np.minimum(ROOM, (1 - exact) / 2)
+    least, most = (
+        (end - exact) * scale if bounded else sign * np.inf * scale
+        for end, sign in ((low, -1), (high, 1))
+    )
     return Residuals(
         lambda z: (at(_values, z, points, CHUNK) - exact) * scale,
         lambda z, rows: at(_slopes, z, points[rows], CHUNK_OF_ROWS)[:, free] * scale[rows, None],
         lambda z: at(_rooms, z, points, CHUNK),
         lambda z, rows: at(_room_slopes, z, points[rows], CHUNK_OF_ROWS)[:, free],
+        least,
+        most,
     )
 
 
@@ -102,36 +123,43 @@ def minimise_largest(
     best = np.asarray(start, float)
     if not len(best):
         return best
-    error = problem.values(best)
-    least, trust, idle = badness(error, side).max(), TRUST, 0.0
+    error, allowed = problem.values(best), limits(problem, side)
+    least, trust, idle = badness(error, *allowed).max(), TRUST, 0.0
     count = ROWS + ROWS_A_COEFFICIENT * len(best)
     kept = np.zeros(len(error), bool)
     for _ in range(programs):
-        kept |= _worst(badness(error, side), count)
+        kept |= _worst(badness(error, *allowed), count)
         if kept.sum() > 3 * count:
-            kept = _worst(badness(error, side), count)
+            kept = _worst(badness(error, *allowed), count)
         rows = np.nonzero(kept)[0]
-        step = _program(problem, best, error, rows, side, trust)
+        step = _program(problem, best, error, rows, allowed, trust)
         trial = best + step
         tried = problem.values(trial)
-        value = badness(tried, side).max() if problem.positive(trial).min() > 0 else np.inf
+        value = badness(tried, *allowed).max() if problem.positive(trial).min() > 0 else np.inf
         if value < least * (1 - 1e-9):
             idle = 0.0 if value < least * (1 - WORTHWHILE) else idle + 1
             best, error, least = trial, tried, value
             trust = min(2 * trust, 3.0)
         else:
             if np.isfinite(tried).all():
-                kept |= _worst(badness(tried, side), 50)
+                kept |= _worst(badness(tried, *allowed), 50)
             trust, idle = trust / 3, idle + 0.5
         if trust < LEAST_TRUST or idle >= PATIENCE:
             break
     return best
 
 
-def badness(error: np.ndarray, side: Side) -> np.ndarray:
-    """Give the size of each error, larger where it is on the wrong side; ∞ where it is NaN."""
-    sign = {"both": 0, "below": 1, "above": -1}[side]
-    bad = np.abs(error) + WRONG * np.maximum(sign * error, 0)
+def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
+    """Give the lowest and the highest errors (n,) that are allowed, with those of a side."""
+    return (
+        np.maximum(problem.least, 0) if side == "above" else problem.least,
+        np.minimum(problem.most, 0) if side == "below" else problem.most,
+    )
+
+
+def badness(error: np.ndarray, least: np.ndarray, most: np.ndarray) -> np.ndarray:
+    """Give the size of each error, larger where it is not allowed; ∞ where it is NaN."""
+    bad = np.abs(error) + WRONG * np.maximum(np.maximum(error - most, least - error), 0)
     return np.where(np.isfinite(bad), bad, np.inf)
 
 
@@ -142,7 +170,7 @@ def _worst(size: np.ndarray, count: int) -> np.ndarray:
     return chosen
 
 
-def _program(problem, z, error, rows, side, trust) -> np.ndarray:
+def _program(problem, z, error, rows, allowed, trust) -> np.ndarray:
     """Solve the tangent's program: the step (m,) that makes the largest linear error least."""
     slopes, values = problem.slopes(z, rows), error[rows]
     room = problem.positive(z)
@@ -152,23 +180,29 @@ def _program(problem, z, error, rows, side, trust) -> np.ndarray:
     guard, spare = guard[held], np.maximum(spare[held], 0.0)
     unit = 1 / np.maximum(np.abs(slopes).max(axis=0), 1e-12)
     radius = trust * np.maximum(np.abs(z), 0.05) / unit
-    # One-sided: t bounds the size of the error on one side; on the other, only a slack s does that
-    # costs so much that it is zero wherever it can be.
-    bounded, slack = np.array([[-1.0, 0.0]]), np.array([[0.0, -1.0]])
-    upper = np.repeat(slack if side == "below" else bounded, len(rows), axis=0)
-    lower = np.repeat(slack if side == "above" else bounded, len(rows), axis=0)
-    matrix = np.concatenate(
-        [
-            np.hstack([slopes * unit, upper]),
-            np.hstack([-slopes * unit, lower]),
-            np.hstack([-guard * unit, np.zeros((len(guard), 2))]),
-        ]
-    )
-    limit = np.concatenate([-values, values, spare])
+    # t bounds the size of every error. What is not allowed is bounded by a slack s, which costs so
+    # much that it is zero wherever it can be; where that is all of a side, t has nothing to add.
+    least, most = (each[rows] for each in allowed)
+    parts = [
+        _rows(slopes * unit, -values, most > 0, 0),
+        _rows(-slopes * unit, values, least < 0, 0),
+        _rows(slopes * unit, most - values, np.isfinite(most), 1),
+        _rows(-slopes * unit, values - least, np.isfinite(least), 1),
+        _rows(-guard * unit, spare, np.full(len(guard), True), None),
+    ]
+    matrix, limit = (np.concatenate(each) for each in zip(*parts, strict=True))
     bounds = [(-r, r) for r in radius] + [(0, None)] * 2
     cost = np.concatenate([np.zeros(len(z)), [1.0, OVER]])
     solved = linprog(cost, matrix, limit, bounds=bounds)
     return solved.x[:-2] * unit if solved.success else np.zeros(len(z))
+
+
+def _rows(matrix, limit, some, column) -> tuple[np.ndarray, np.ndarray]:
+    """Give some rows of matrix·z ≤ limit, the right side raised by the variable of a column."""
+    raised = np.zeros((int(some.sum()), 2))
+    if column is not None:
+        raised[:, column] = -1
+    return np.hstack([matrix[some], raised]), limit[some]
 
 
 def lower_bound(

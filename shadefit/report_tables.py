@@ -93,6 +93,9 @@ def _certificate(table: Table | None) -> str:
     recorded = table.certificates.model_dump(exclude_none=True)
     bound, boxes = recorded.get("denominator_bound"), recorded["boxes"]
     denominators = "no denominator" if bound is None else f"≥ {bound:.3g} in {boxes:,} boxes"
+    if "range" in recorded:
+        low, high = recorded["range"]
+        denominators += f"; values in [{low:.3g}, {high:.3g}]"
     # Known of fits that make the largest error small.
     least = recorded.get("least_error")
     return denominators if least is None else f"{denominators}; error ≥ {least:.3g}"
@@ -161,6 +164,8 @@ def _goal(goal: dict) -> str:
     words = [f"the {_NORMS[goal['norm']]} {'relative' if goal['relative'] else 'absolute'} error"]
     if goal["side"] != "both":
         words.append(f"staying {goal['side']} the exact values")
+    if goal["bounded"]:
+        words.append("values between 0 and 1")
     if goal["rounding"] != "none":
         words.append(f"coefficients rounded to {goal['rounding']}")
     return ", ".join(words)

@@ -3,9 +3,10 @@ import dataclasses
 import numpy as np
 import pytest
 
+import fitting.improve
 from fitting import Goal, form_values, improve
-from fitting.errors import off_grid_reference
-from fitting.families.ps import cubic_ps
+from fitting.errors import check_reference, off_grid_reference
+from fitting.families.ps import cubic_ps, one_root_ps
 from fitting.families.q import pole_q
 from fitting.families.r import monomial_r
 from fitting.grow import grown_r
@@ -82,9 +83,33 @@ def test_a_form_without_coefficients_is_measured_and_certified():
     assert np.size(fit.form.coefficients) == 0
 
 
-def test_least_squares_has_no_side():
+def test_least_squares_has_no_side_and_no_bounds():
     with pytest.raises(ValueError, match="side = 'below'"):
         Goal("l2", side="below")
+    with pytest.raises(ValueError, match="bounded = True with norm = 'l2'"):
+        Goal(bounded=True)
+
+
+def test_a_bounded_fit_that_is_not_proven_to_be_is_refused(monkeypatch):
+    goal = Goal("linf", bounded=True)
+    assert improve(Q_FORM, goal).range is not None
+    monkeypatch.setattr(fitting.improve, "certify_range", lambda form: None)
+    assert improve(Q_FORM, Goal("linf")).range is None
+    with pytest.raises(ValueError, match="not shown to be between 0 and 1"):
+        improve(Q_FORM, goal)
+
+
+@pytest.mark.slow
+def test_a_bounded_fit_is_a_fraction_where_the_best_one_is_not():
+    form = one_root_ps(skew=0, degree=1, least_alpha=0.15)
+    free, bounded = (improve(form, Goal("linf", bounded=each)) for each in (False, True))
+    points, _ = check_reference(form, 77)
+    assert form_values(free.form, points).max() > 1.01
+    assert free.range is None
+    assert form_values(bounded.form, points).max() <= 1
+    assert bounded.range is not None
+    assert (bounded.range.lower, bounded.range.upper) == (0, 1)
+    assert free.on_grid.largest < bounded.on_grid.largest < 1.5 * free.on_grid.largest
 
 
 @pytest.mark.slow

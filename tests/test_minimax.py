@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from fitting import Goal, improve
-from fitting.minimax import lower_bound, minimise_largest, residuals
+from fitting.minimax import ROOM, lower_bound, minimise_largest, residuals
 from fitting.paper import QuadraticQ, RationalG
 from fitting.samples import sample_of
 
@@ -10,8 +10,8 @@ NODES = np.linspace(0, 0.5, 501)[:, None]
 ONES = np.ones(len(NODES))
 
 
-def problem(exact: np.ndarray, fixed=(np.nan, np.nan)):
-    return residuals(QuadraticQ, NODES, exact, ONES, np.array(fixed))
+def problem(exact: np.ndarray, fixed=(np.nan, np.nan), bounded: bool = False):
+    return residuals(QuadraticQ, NODES, exact, ONES, np.array(fixed), bounded)
 
 
 def test_the_error_of_the_best_parabola_alternates():
@@ -44,6 +44,29 @@ def test_a_side_is_kept_at_every_point(side, sign):
     error = problem(exact).values(minimise_largest(problem(exact), np.zeros(2), side))
     assert (sign * error).max() <= 3e-6  # the programs are solved to 1e-7
     assert both < np.abs(error).max() < 10 * both
+
+
+def test_bounded_values_stay_away_from_zero_and_one():
+    # The parabola that follows this best falls below 0.
+    exact = np.exp(-20 * NODES[:, 0])
+    free, bounded = (problem(exact, bounded=each) for each in (False, True))
+    outside, inside = (minimise_largest(each, np.array([-0.1, 0.0])) for each in (free, bounded))
+    assert np.min(exact + free.values(outside)) < -0.05
+    values = exact + bounded.values(inside)
+    # No nearer than ROOM, or half of what the exact value leaves; programs are solved to 1e-7.
+    assert np.all(values >= np.minimum(ROOM, exact / 2) - 1e-6)
+    assert np.all(1 - values >= np.minimum(ROOM, (1 - exact) / 2) - 1e-6)
+    assert np.abs(free.values(outside)).max() < np.abs(bounded.values(inside)).max()
+    # It is as near as it may be.
+    assert values.min() < 2 * ROOM
+
+
+def test_bounds_and_a_side_hold_together():
+    exact = np.exp(-20 * NODES[:, 0])
+    both = problem(exact, bounded=True)
+    values = exact + both.values(minimise_largest(both, np.zeros(2), "above"))
+    assert np.all(values >= exact - 1e-6)
+    assert np.all(values <= 1 + 1e-6)
 
 
 def test_a_fixed_coefficient_is_left_alone():

@@ -23,6 +23,9 @@ _Rounding = Annotated[
     typer.Option(help="Precision that coefficients are rounded to, the others refitted in turn."),
 ]
 _Relative = Annotated[bool, typer.Option("--relative", help="Make relative errors small.")]
+_Bounded = Annotated[
+    bool, typer.Option("--bounded", help="With linf, values between 0 and 1, and proven to be.")
+]
 
 
 @app.command(
@@ -51,16 +54,23 @@ def _refit(
     side: _Side = None,
     rounding: _Rounding = None,
     relative: _Relative = False,
+    bounded: _Bounded = False,
     json: Json = False,
 ) -> None:
     """Refit forms to exact values, the paper's or a best table's, and write the tables."""
     from shadefit import refit
 
-    refit.run(names or [], out, grid, weight, _goal(norm, side, rounding, relative), json)
+    refit.run(names or [], out, grid, weight, _goal(norm, side, rounding, relative, bounded), json)
 
 
-def _goal(norm, side, rounding, relative) -> dict[str, Any]:
-    given = {"norm": norm, "side": side, "rounding": rounding, "relative": relative or None}
+def _goal(norm, side, rounding, relative, bounded) -> dict[str, Any]:
+    given = {
+        "norm": norm,
+        "side": side,
+        "rounding": rounding,
+        "relative": relative or None,
+        "bounded": bounded or None,
+    }
     return {key: value for key, value in given.items() if value is not None}
 
 
@@ -80,6 +90,7 @@ def _search(
     side: _Side = None,
     rounding: _Rounding = None,
     relative: _Relative = False,
+    bounded: _Bounded = False,
     out: Annotated[
         Path, typer.Option(help="Folder for tables and plot; what is there is not fitted again.")
     ] = Path("search"),
@@ -93,7 +104,7 @@ def _search(
     from shadefit import search
 
     goal: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
-    goal |= _goal(norm, side, rounding, relative)
+    goal |= _goal(norm, side, rounding, relative, bounded)
     search.run(quantity, budget, max_error, least_alpha, Goal(**goal), out, json)
 
 
