@@ -21,6 +21,7 @@ from fitting.families import candidates
 from fitting.grow import grown_r
 from integrals import R
 from programs.trace import trace
+from shadefit.figures.frontier import closed_form
 from shadefit.figures.search import draw
 from shadefit.refit import require_writable
 from shadefit.terminal import print_json, print_table, stages
@@ -80,7 +81,8 @@ def run(
     good = [each for each in best if max_error is None or each.largest <= max_error]
     published = _published(quantity)
     drawn = out / f"{quantity}-frontier"
-    for extension, data in draw(quantity, found, best, published).items():
+    exact = _exact(quantity)
+    for extension, data in draw(quantity, found, best, published, exact).items():
         write_whole_bytes(drawn.with_suffix(f".{extension}"), data)
     if as_json:
         records = {"frontier": best, "good": good, "all": found}
@@ -88,6 +90,7 @@ def run(
             {
                 "quantity": quantity,
                 "published": asdict(published),
+                "exact": [asdict(each) for each in exact],
                 "refused": refused,
                 **{key: [asdict(each) for each in value] for key, value in records.items()},
             }
@@ -97,7 +100,7 @@ def run(
     print_table(
         f"{quantity}: the frontier of {len(found)} forms{limit}",
         ["table", "form", "coefficients", "operations", "rms", "largest", "published / this"],
-        [_row(each, published) for each in (published, *(good or best))],
+        [_row(each, published) for each in (published, *(good or best), *exact)],
         f"Operations a call, of P_s a direction. {refused} forms refused: no start without poles. "
         f"Plot: {drawn}.png",
     )
@@ -197,6 +200,14 @@ def _published(quantity: str) -> Found:
     return Found(
         name, table.form, size, _operations(table), errors.rms, errors.largest, "coefficients"
     )
+
+
+def _exact(quantity: str) -> list[Found]:
+    """Give the closed form, at which every frontier ends; R has none."""
+    return [
+        Found(mark.name, "exact", 0, mark.operations, mark.rms, mark.largest, "")
+        for mark in closed_form(quantity)
+    ]
 
 
 def _row(each: Found, published: Found) -> list[str]:

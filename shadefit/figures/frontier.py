@@ -94,10 +94,11 @@ def marks(quantity: str) -> tuple[Mark, ...]:
         )
         for entry in entries
     ]
-    return (*found, *_closed_form(quantity))
+    return (*found, *closed_form(quantity))
 
 
-def _closed_form(quantity: str) -> list[Mark]:
+def closed_form(quantity: str) -> list[Mark]:
+    """Give the mark of the closed form, evaluated in float32; none where there is no such form."""
     if quantity not in _EXACT:
         return []
     exact, columns = _EXACT[quantity]

@@ -8,21 +8,28 @@ from shadefit.figures.style import COLOURS, MARKERS, render
 QUIET = "#aaaaaa"
 
 
-def draw(quantity: str, found, best, published) -> dict[str, bytes]:
+def draw(quantity: str, found, best, published, exact) -> dict[str, bytes]:
     """Draw what a search found; returns the files by extension.
 
-    `found`, `best` and `published` have a name, `operations` and a `largest` error.
+    `published`, and each of `found`, `best` and `exact`, the closed form if there is one, has
+    `operations` and a `largest` error.
     """
-    return render(lambda: _figure(quantity, found, best, published))
+    return render(lambda: _figure(quantity, found, best, published, exact))
 
 
-def _figure(quantity: str, found, best, published) -> Figure:
+def _figure(quantity: str, found, best, published, exact) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     axes = figure.subplots()
-    every = [*found, published]
+    every = [*found, published, *exact]
     axes.plot(*_columns(found), ".", color=QUIET, label="forms tried", zorder=1)
     axes.step(*_columns(best), where="post", color=COLOURS["best"], lw=1, zorder=2)
-    for marks, kind, label in ((best, "best", "frontier"), ([published], "published", "published")):
+    for marks, kind, label in (
+        (best, "best", "frontier"),
+        ([published], "published", "published"),
+        (exact, "exact", "closed form in float32"),
+    ):
+        if not marks:
+            continue
         colour, shape = COLOURS[kind], MARKERS[kind]
         axes.scatter(*_columns(marks), s=28, color=colour, marker=shape, label=label, zorder=3)
     costs = [each.operations for each in every]
