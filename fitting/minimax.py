@@ -31,7 +31,7 @@ LEAST_TRUST = 1e-6
 WORTHWHILE = 1e-4
 PATIENCE = 4
 # A bound is sought at these parts of the error that was found, on this many of the points.
-BOUND_LEVELS = (0.999, 0.99, 0.95, 0.9, 0.8, 0.5)
+BOUND_LEVELS = (0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)
 BOUND_ROWS = 500
 INFEASIBLE = 2  # linprog's status
 # What is on the wrong side counts this many times in a program, so that a start may be there, and
