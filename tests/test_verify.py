@@ -56,7 +56,7 @@ def test_a_hundred_thousand_points_and_the_corners(name):
     assert result.status == "passed", result.reason
     assert result.points >= 100_000
     # The tables are worth no more than their fits, and rounding adds next to nothing to that.
-    fits = {"ps": 0.16, "g": 0.14, "q": 0.0107, "r": 1.4e-3, EXACT_PS: EXACT_ERROR}
+    fits = {"ps": 0.16, "g": 0.14, "q": 0.0107, "r": 1.4e-3, "velvet": 5e-4, EXACT_PS: EXACT_ERROR}
     assert result.integral.largest <= fits[name]
 
 
