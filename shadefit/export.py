@@ -111,6 +111,8 @@ def _header(
     }
     if chosen.remark:
         head["Arguments"] = chosen.remark
+    if chosen.proven:
+        head["Proven in exact arithmetic"] = "; ".join(chosen.proven)
     own = None
     if chosen.form is None:
         # The same points and steps, without the precision's roundings.

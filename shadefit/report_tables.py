@@ -6,6 +6,7 @@ from html import escape
 
 from coefficients.catalogue import AS_PRINTED, load, names
 from coefficients.cost import count
+from coefficients.proven import proven
 from coefficients.shaders import EXACT_PS, shader
 from coefficients.table import Table
 from integrals import INTEGRALS
@@ -88,17 +89,7 @@ def _operations(mark: Mark, quantity: str) -> str:
 
 
 def _certificate(table: Table | None) -> str:
-    if table is None or table.certificates is None:
-        return "—"
-    recorded = table.certificates.model_dump(exclude_none=True)
-    bound, boxes = recorded.get("denominator_bound"), recorded["boxes"]
-    denominators = "no denominator" if bound is None else f"≥ {bound:.3g} in {boxes:,} boxes"
-    if "range" in recorded:
-        low, high = recorded["range"]
-        denominators += f"; values in [{low:.3g}, {high:.3g}]"
-    # Known of fits that make the largest error small.
-    least = recorded.get("least_error")
-    return denominators if least is None else f"{denominators}; error ≥ {least:.3g}"
+    return "—" if table is None or table.certificates is None else "; ".join(proven(table))
 
 
 def errata() -> str:
