@@ -41,6 +41,8 @@ LINEARISED = 8
 EXCHANGES, EXCHANGED = 2, 300
 # Denominators are shown to be above this.
 ENOUGH = 1e-6
+# Values of forms of more arguments are not bounded in any number of boxes that can be held.
+MOST_AXES = 2
 # Coefficients are rounded in this many turns.
 TURNS = 4
 PRECISIONS = {"float32": np.float32, "float16": np.float16}
@@ -59,6 +61,8 @@ def improve(
     where no start gives a form without poles, where the result has one, and where the goal is
     bounded and the result is not shown to be.
     """
+    if goal.bounded and len(form.axes) > MOST_AXES and form.margins is Form.margins:
+        raise ValueError(f"bounded = True: no proof is known that would bound {form.name}")
     progress(f"exact {form.integral.symbol} where {form.name} is fitted")
     sample = sample_of(form, goal, weight)
     progress(f"{form.name}: least squares")

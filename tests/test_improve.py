@@ -9,7 +9,7 @@ from fitting.families.ps import cubic_ps, one_root_ps
 from fitting.families.q import pole_q
 from fitting.families.r import monomial_r
 from fitting.grow import grown_r
-from fitting.paper import QuadraticQ
+from fitting.paper import QuadraticQ, RationalPs
 
 Q_FORM = pole_q(structure="one", terms=1, poles=1)
 R_FORM = monomial_r(
@@ -94,6 +94,11 @@ def test_a_bounded_fit_that_is_not_proven_to_be_is_refused(monkeypatch):
     monkeypatch.setattr(bounds, "MAX_BOXES", 0)
     with pytest.raises(ValueError, match="not shown to be between 0 and 1"):
         improve(Q_FORM, Goal("linf", bounded=True))
+
+
+def test_what_no_proof_is_known_for_is_refused_at_once():
+    with pytest.raises(ValueError, match="no proof is known that would bound rational-ps"):
+        improve(RationalPs, Goal("linf", bounded=True), start=np.zeros(162))
 
 
 @pytest.mark.slow
