@@ -81,8 +81,8 @@ def residuals(
     # No more room than half of what the exact value leaves: it may be 0 or 1.
     low, high = np.minimum(ROOM, exact / 2), 1 - np.minimum(ROOM, (1 - exact) / 2)
     least, most = (
-        (end - exact) * scale if bounded else sign * np.inf * scale
-        for end, sign in ((low, -1), (high, 1))
+        (end - exact) * scale if bounded else np.full(len(exact), limit)
+        for end, limit in ((low, -np.inf), (high, np.inf))
     )
     return Residuals(
         lambda z: (at(_values, z, points, CHUNK) - exact) * scale,

@@ -101,8 +101,8 @@ def run(
         f"{quantity}: the frontier of {len(found)} forms{limit}",
         ["table", "form", "coefficients", "operations", "rms", "largest", "published / this"],
         [_row(each, published) for each in (published, *(good or best), *exact)],
-        f"Operations a call, of P_s a direction. {refused} forms refused: no start without poles. "
-        f"Plot: {drawn}.png",
+        f"Operations a call, of P_s a direction. {refused} forms refused: they have poles, or are "
+        f"not shown to have none. Plot: {drawn}.png",
     )
 
 
