@@ -70,6 +70,9 @@ def run(
             # The count needs no values: forms beyond the budget are never fitted.
             if budget is not None and _operations(_blank(form)) > budget:
                 continue
+            if _refusal(form, goal, out).is_file():
+                refused += 1
+                continue
             table = _made_before(form, goal, out) or _fitted(form, goal, out, tell)
             if table is None:
                 refused += 1
@@ -165,13 +168,18 @@ def _made_before(form: type[Form], goal: Goal, out: Path) -> Table | None:
     return table if same and table.errors is not None else None
 
 
+def _refusal(form: type[Form], goal: Goal, out: Path) -> Path:
+    """Give the file that says why a candidate was refused, so that it is not tried again."""
+    return out / f"{_name(form, goal)}.refused.txt"
+
+
 def _fitted(form: type[Form], goal: Goal, out: Path, tell) -> Table | None:
-    """Fit a candidate and write its table; None where it is refused."""
+    """Fit a candidate and write its table; None, and why, where it is refused."""
     name = _name(form, goal)
     try:
         fit = improve(form, goal, tell)
     except ValueError as error:
-        tell(str(error))
+        write_whole(_refusal(form, goal, out), f"{error}\n")
         return None
     table = from_fit(fit, f"shadefit search {form.integral.name}", name)
     write_whole(out / f"{name}.json", serialise(table))

@@ -49,3 +49,18 @@ def test_what_cannot_be_searched_is_refused_in_one_line(tmp_path, arguments, mes
         search.run(*arguments, GOAL, tmp_path, True)
     assert "\n" not in str(caught.value)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_form_that_was_refused_is_not_tried_again(tmp_path, capsys, monkeypatch):
+    def refuse(*_):
+        raise ValueError("it has a pole")
+
+    monkeypatch.setattr(search, "improve", refuse)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="no form of q was found"):
+            run(capsys, tmp_path)
+        # From now on an attempt would be a TypeError.
+        monkeypatch.setattr(search, "improve", None)
+    reasons = list(tmp_path.glob("*.refused.txt"))
+    assert reasons
+    assert {path.read_text() for path in reasons} == {"it has a pole\n"}

@@ -36,6 +36,9 @@ def _figure(quantity: str, found, best, published, exact) -> Figure:
     wide = max(costs) > 4 * min(costs)
     axes.set(xscale="log" if wide else "linear", yscale="log")
     axes.xaxis.set_major_formatter(ScalarFormatter())
+    if max(costs) < 10 * min(costs):
+        # Within a decade the minor ticks are the ones with labels.
+        axes.xaxis.set_minor_formatter(ScalarFormatter())
     if not wide:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(xlabel="operations", ylabel="largest error", title=quantity)
