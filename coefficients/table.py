@@ -174,6 +174,11 @@ class Table(_Part):
             )
         return self
 
+    @property
+    def size(self) -> int:
+        """How many coefficients there are."""
+        return math.prod(_shape(self.coefficients))
+
 
 def _shape(nested: list) -> tuple[int, ...]:
     if nested and isinstance(nested[0], list):

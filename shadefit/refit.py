@@ -124,7 +124,7 @@ def _row(table: Table, file: Path) -> list[str]:
     return [
         table.name,
         table.equation if len(table.equation) <= 20 else table.form,
-        str(sum(len(row) if isinstance(row, list) else 1 for row in table.coefficients)),
+        str(table.size),
         f"{errors.off_grid.rms:.4e}",
         f"{errors.off_grid.max:.4e}",
         "none" if bound is None else f"{bound:.3g}",

@@ -62,7 +62,7 @@ def _row(mark: Mark, base: Mark, quantity: str) -> str:
     table = None if mark.kind == "exact" else load(mark.name)
     cells = [
         table.equation if table else "closed form",
-        str(_size(table)) if table else "0",
+        str(table.size) if table else "0",
         _operations(mark, quantity),
         f"{mark.rms:.3e}",
         f"{mark.rms / base.rms:.3g}",
@@ -73,10 +73,6 @@ def _row(mark: Mark, base: Mark, quantity: str) -> str:
     first = f"<td{_TEXT}>{markup(cells[0])}</td>"
     rest = "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:])
     return f'<tr><th scope="row">{escape(mark.name)}</th>{first}{rest}</tr>'
-
-
-def _size(table: Table) -> int:
-    return sum(len(row) if isinstance(row, list) else 1 for row in table.coefficients)
 
 
 def _operations(mark: Mark, quantity: str) -> str:

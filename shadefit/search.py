@@ -21,7 +21,7 @@ from fitting.families import candidates
 from fitting.grow import grown_r
 from integrals import R
 from programs.trace import trace
-from shadefit.figures.frontier import closed_form
+from shadefit.figures.frontier import best_so_far, closed_form
 from shadefit.figures.search import draw
 from shadefit.refit import require_writable
 from shadefit.terminal import print_json, print_table, stages
@@ -80,7 +80,7 @@ def run(
             found.append(_found(table, out))
     if not found:
         raise ValueError(f"no form of {quantity} was found within {budget} operations")
-    best = frontier(found)
+    best = best_so_far(found)
     good = [each for each in best if max_error is None or each.largest <= max_error]
     published = _published(quantity)
     drawn = out / f"{quantity}-frontier"
@@ -107,15 +107,6 @@ def run(
         f"Operations a call, of P_s a direction. {refused} forms refused: they have poles, or are "
         f"not shown to have none. Plot: {drawn}.png",
     )
-
-
-def frontier(found: list[Found]) -> list[Found]:
-    """Give those that no other one beats in both operations and largest error, by operations."""
-    best: list[Found] = []
-    for each in sorted(found, key=lambda each: (each.operations, each.largest, each.name)):
-        if not best or each.largest < best[-1].largest:
-            best.append(each)
-    return best
 
 
 def _candidates(quantity: str, least_alpha: float) -> Iterator[type[Form]]:
@@ -192,7 +183,7 @@ def _found(table: Table, out: Path) -> Found:
     return Found(
         table.name,
         table.form,
-        len(table.coefficients),
+        table.size,
         _operations(table),
         errors.off_grid.rms,
         errors.off_grid.max,
@@ -204,9 +195,8 @@ def _published(quantity: str) -> Found:
     name = f"published/{quantity}"
     table = load(name)
     errors = compare([(name, table)]).entries[0].errors
-    size = sum(len(row) if isinstance(row, list) else 1 for row in table.coefficients)
     return Found(
-        name, table.form, size, _operations(table), errors.rms, errors.largest, "coefficients"
+        name, table.form, table.size, _operations(table), errors.rms, errors.largest, "coefficients"
     )
 
 
