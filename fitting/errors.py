@@ -22,6 +22,10 @@ R_NODES, R_NODES_LOW_ALPHA, R_ALPHA = 32, 96, 0.15
 # Points that are evaluated at once.
 CHUNK = 8192
 CHUNK_OF_R = 64
+# From the worst point of each cell, so many along each side of the domain, larger errors are sought
+# at these parts of the sides; not of R, which is smooth in its two variables and dear.
+CELLS = 4
+RADII = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
 
 
 @dataclass(frozen=True)
@@ -68,15 +72,42 @@ def off_grid_errors(form: Form) -> Errors:
 def judge(form: Form, domain: type[Form]) -> Errors:
     """Measure a form on the domain of another (or its own).
 
-    The rms error is over scrambled Sobol' points. The largest is over these and over points on
-    faces, edges and corners of the domain, and where the integral is steep.
+    The rms error is over scrambled Sobol' points. The largest is over these, over points on faces,
+    edges and corners of the domain and where the integral is steep, and uphill from the worst.
     """
     points, exact = off_grid_reference(domain)
     inside = measure(form_values(form, points) - exact, points, domain)
     points, exact = check_reference(domain, OFF_GRID_SEED)
-    outside = measure(form_values(form, points) - exact, points, domain)
-    worst = max(inside, outside, key=lambda each: each.largest)
+    difference = form_values(form, points) - exact
+    outside = measure(difference, points, domain)
+    uphill = outside if domain.integral.name == "r" else _uphill(form, domain, points, difference)
+    worst = max(inside, outside, uphill, key=lambda each: each.largest)
     return Errors(inside.rms, worst.largest, worst.where, inside.points)
+
+
+def _uphill(form: Form, domain: type[Form], points: np.ndarray, difference: np.ndarray) -> Errors:
+    """Seek larger errors about the worst point of each cell, nearer to them in every round."""
+    lower = np.array([axis.lower for axis in domain.axes])
+    upper = np.array([axis.upper for axis in domain.axes])
+    rng = np.random.default_rng(OFF_GRID_SEED)
+    # The worst point of every cell: the largest error may be on a ridge that few points are on.
+    cells = np.ravel_multi_index(
+        np.minimum(CELLS * (points - lower) / (upper - lower), CELLS - 1).astype(int).T,
+        (CELLS,) * len(lower),
+    )
+    order = np.argsort(np.abs(difference))
+    worst = np.full(CELLS ** len(lower), -1)
+    worst[cells[order]] = order
+    best = points[worst[worst >= 0]]
+    for radius in RADII:
+        steps = rng.normal(size=(CHUNK // len(best), *best.shape)) * radius * (upper - lower)
+        steps[0] = 0
+        tried = np.clip(best + steps, lower, upper)
+        flat = tried.reshape(-1, len(lower))
+        error = form_values(form, flat) - exact_values(domain.integral, flat)
+        found = np.argmax(np.abs(error).reshape(tried.shape[:2]), axis=0)
+        best = tried[found, np.arange(len(best))]
+    return measure(form_values(form, best) - exact_values(domain.integral, best), best, domain)
 
 
 @functools.lru_cache(maxsize=16)

@@ -71,7 +71,7 @@ def test_one_table_is_better_for_no_more_operations_and_one_ten_times_better(qua
         ("q", 9, 2e-5),
         ("g", 13, 5e-3),
         ("r", 36, 1e-4),
-        ("ps", 15, 0.066),
+        ("ps", 15, 0.075),
         ("ps", 25, 0.02),
         ("ps", 40, 4e-3),
     ],

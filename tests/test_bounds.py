@@ -8,6 +8,7 @@ from coefficients.catalogue import form_of, load, names_of_best
 from fitting import PAPER_FORMS, QuadraticQ, bounds
 from fitting.bounds import FRACTIONS, ROUNDING, TIGHTNESS, bound_values, certify_range
 from fitting.certificate import as_program, traced
+from fitting.errors import check_reference, form_values
 from fitting.families.ps import cubic_ps, one_root_ps, two_root_ps
 from fitting.spread import spread_points
 from programs.program import evaluate
@@ -174,3 +175,10 @@ def test_a_margin_that_is_negative_somewhere_is_found(name):
 def test_the_paper_s_forms_have_no_margins():
     for form in PAPER_FORMS.values():
         assert form(jnp.zeros(np.shape(form.coefficient_names()))).margins() is None
+
+
+def test_the_published_ps_is_no_fraction_everywhere():
+    form = form_of(load("published/ps"))
+    values = form_values(form, check_reference(type(form), 77)[0])
+    assert values.min() < -0.04
+    assert values.max() > 1.05

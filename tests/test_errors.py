@@ -3,8 +3,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from coefficients.catalogue import form_of, load
 from fitting.errors import (
     OFF_GRID_EXPONENT,
+    OFF_GRID_SEED,
+    check_reference,
     exact_estimates,
     exact_values,
     form_values,
@@ -14,8 +17,9 @@ from fitting.errors import (
 )
 from fitting.grid import gauss_grid, off_grid_points, trapezoid_grid
 from fitting.paper import PAPER_FORMS, QuadraticQ, RationalG, RationalR
+from fitting.spread import spread_points
 from fitting.velvet import ConservativeNorm
-from integrals import INTEGRALS, Q, R
+from integrals import INTEGRALS, PS, Q, R
 
 FORMS = {form.integral.name: form for form in (*PAPER_FORMS.values(), ConservativeNorm)}
 C = {"g": [-0.9, 0.4, 0.7, -0.26], "q": [-1.7, 1.2]}
@@ -89,8 +93,21 @@ def test_off_grid_errors_are_those_on_the_off_grid_set():
     d = points[:, 0]
     difference = 1 + C["q"][0] * d + C["q"][1] * d**2 - exact_values(Q, points)
     assert found.rms == pytest.approx(np.sqrt(np.mean(difference**2)), rel=1e-12)
-    assert found.largest == pytest.approx(np.abs(difference).max(), rel=1e-12)
-    assert found.where == {"density": d[np.argmax(np.abs(difference))]}
+    # What is found uphill is no less, and for a parabola no more to speak of.
+    assert found.largest >= np.abs(difference).max()
+    assert found.largest == pytest.approx(np.abs(difference).max(), rel=1e-6)
+    assert found.where["density"] == pytest.approx(d[np.argmax(np.abs(difference))], abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["best/ps-11", "best/ps-40"])
+def test_a_ridge_between_the_points_is_found(name):
+    """Four hundred thousand other points have no error that is larger by more than three per cent."""
+    form = form_of(load(name))
+    points = spread_points("ps", type(form).axes, 17, seed=987)
+    other = np.abs(form_values(form, points) - exact_values(PS, points)).max()
+    points, exact = check_reference(type(form), OFF_GRID_SEED)
+    without = np.abs(form_values(form, points) - exact).max()
+    assert off_grid_errors(form).largest > max(1.05 * without, other / 1.03)
 
 
 def test_a_form_that_is_no_number_somewhere_has_an_error_that_is_none():

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol, TypeVar
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -73,20 +73,6 @@ def draw_frontier() -> Figure:
     return figure
 
 
-class _Worth(Protocol):
-    """What is weighed: anything with a name, operations and a largest error."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def operations(self) -> int: ...
-    @property
-    def largest(self) -> float: ...
-
-
-_Marked = TypeVar("_Marked", bound=_Worth)
-
-
 @lru_cache(maxsize=8)
 def marks(quantity: str) -> tuple[Mark, ...]:
     """Give a mark for every named table of a quantity, and for its closed form where there is one.
@@ -126,9 +112,12 @@ def closed_form(quantity: str) -> list[Mark]:
     return [Mark("closed form", "exact", count(program).operations, float(error.max()), rms)]
 
 
-def best_so_far(every: Iterable[_Marked]) -> list[_Marked]:
-    """Give the marks that no other one beats in both operations and largest error, by cost."""
-    best: list[_Marked] = []
+def best_so_far(every: Iterable[Any]) -> list[Any]:
+    """Give those that no other one beats in both operations and largest error, by cost.
+
+    Each has a `name`, `operations` and the `largest` error.
+    """
+    best = []
     for mark in sorted(every, key=lambda mark: (mark.operations, mark.largest, mark.name)):
         if not best or mark.largest < best[-1].largest:
             best.append(mark)
