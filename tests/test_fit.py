@@ -69,7 +69,8 @@ def test_a_refit_states_what_its_form_measures_off_the_grid(name, count):
     points, exact = check_reference(type(fit.form), OFF_GRID_SEED)
     boundary = form_values(fit.form, points) - exact
     largest = max(np.abs(difference).max(), np.abs(boundary).max())
-    assert fit.off_grid.largest == pytest.approx(largest, rel=1e-12)
+    # Uphill from there it is larger, but not by much.
+    assert largest * (1 - 1e-12) <= fit.off_grid.largest < 1.02 * largest
     place = np.array([list(fit.off_grid.where.values())])
     there = form_values(fit.form, place) - exact_values(fit.form.integral, place)
     assert abs(there[0]) == pytest.approx(fit.off_grid.largest, rel=1e-9)
