@@ -101,7 +101,7 @@ def test_off_grid_errors_are_those_on_the_off_grid_set():
 
 @pytest.mark.parametrize("name", ["best/ps-11", "best/ps-40"])
 def test_a_ridge_between_the_points_is_found(name):
-    """Four hundred thousand other points have no error that is larger by more than three per cent."""
+    """Of 400,000 other points none has an error that is larger by more than three per cent."""
     form = form_of(load(name))
     points = spread_points("ps", type(form).axes, 17, seed=987)
     other = np.abs(form_values(form, points) - exact_values(PS, points)).max()
