@@ -9,21 +9,17 @@ import numpy as np
 
 from fitting.form import Form
 from fitting.grid import off_grid_points
-from fitting.spread import spread_points
-from integrals import INTEGRALS, Estimate, Integral
+from fitting.spread import COUNTS, spread_points
+from integrals import INTEGRALS, Axis, Estimate, Integral
 
-# log₂ of the size of the off-grid set: R, which has no closed form, is dear.
-OFF_GRID_EXPONENT = {"ps": 17, "g": 16, "q": 16, "r": 12, "velvet": 16}
 OFF_GRID_SEED = 20200717
-# log₂ of the number of points that the boundary's are half as many as.
-CHECK_EXPONENT = {"ps": 15, "g": 15, "q": 13, "r": 10, "velvet": 13}
 # 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py); 96² for lower α.
 R_NODES, R_NODES_LOW_ALPHA, R_ALPHA = 32, 96, 0.15
 # Points that are evaluated at once.
 CHUNK = 8192
 CHUNK_OF_R = 64
 # From the worst point of each cell, so many along each side of the domain, larger errors are sought
-# at these parts of the sides; not of R, which is smooth in its two variables and dear.
+# at these parts of the sides.
 CELLS = 4
 RADII = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
 
@@ -80,40 +76,50 @@ def judge(form: Form, domain: type[Form]) -> Errors:
     points, exact = check_reference(domain, OFF_GRID_SEED)
     difference = form_values(form, points) - exact
     outside = measure(difference, points, domain)
-    uphill = outside if domain.integral.name == "r" else _uphill(form, domain, points, difference)
-    worst = max(inside, outside, uphill, key=lambda each: each.largest)
+    found = [inside, outside]
+    if COUNTS[domain.integral.name].climbs:
+
+        def error(x: np.ndarray) -> np.ndarray:
+            return form_values(form, x) - exact_values(domain.integral, x)
+
+        top = climb(
+            lambda x: np.abs(error(x)), points, np.abs(difference), domain.axes, OFF_GRID_SEED
+        )
+        found.append(measure(error(top), top, domain))
+    worst = max(found, key=lambda each: each.largest)
     return Errors(inside.rms, worst.largest, worst.where, inside.points)
 
 
-def _uphill(form: Form, domain: type[Form], points: np.ndarray, difference: np.ndarray) -> Errors:
-    """Seek larger errors about the worst point of each cell, nearer to them in every round."""
-    lower = np.array([axis.lower for axis in domain.axes])
-    upper = np.array([axis.upper for axis in domain.axes])
-    rng = np.random.default_rng(OFF_GRID_SEED)
-    # The worst point of every cell: the largest error may be on a ridge that few points are on.
+def climb(size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], seed: int):
+    """Give points (cells, axes) of larger `size`, each near a cell's worst of points (n, axes).
+
+    `size` gives those (m,) of points (m, axes), and `sizes` are those of `points`. The largest
+    error may be on a ridge that few points are on: it is sought nearer to them in every round.
+    """
+    lower = np.array([axis.lower for axis in axes])
+    upper = np.array([axis.upper for axis in axes])
+    rng = np.random.default_rng(seed)
     cells = np.ravel_multi_index(
         np.minimum(CELLS * (points - lower) / (upper - lower), CELLS - 1).astype(int).T,
-        (CELLS,) * len(lower),
+        (CELLS,) * len(axes),
     )
-    order = np.argsort(np.abs(difference))
-    worst = np.full(CELLS ** len(lower), -1)
+    order = np.argsort(sizes)
+    worst = np.full(CELLS ** len(axes), -1)
     worst[cells[order]] = order
     best = points[worst[worst >= 0]]
     for radius in RADII:
         steps = rng.normal(size=(CHUNK // len(best), *best.shape)) * radius * (upper - lower)
         steps[0] = 0
         tried = np.clip(best + steps, lower, upper)
-        flat = tried.reshape(-1, len(lower))
-        error = form_values(form, flat) - exact_values(domain.integral, flat)
-        found = np.argmax(np.abs(error).reshape(tried.shape[:2]), axis=0)
+        found = np.argmax(size(tried.reshape(-1, len(axes))).reshape(tried.shape[:2]), axis=0)
         best = tried[found, np.arange(len(best))]
-    return measure(form_values(form, best) - exact_values(domain.integral, best), best, domain)
+    return best
 
 
 @functools.lru_cache(maxsize=16)
 def off_grid_reference(form: type[Form]) -> tuple[np.ndarray, np.ndarray]:
     """Give the off-grid points (n, axes) of a form's domain and the exact values (n,) there."""
-    points = off_grid_points(form.axes, OFF_GRID_EXPONENT[form.integral.name], OFF_GRID_SEED)
+    points = off_grid_points(form.axes, COUNTS[form.integral.name].judged, OFF_GRID_SEED)
     return points, exact_values(form.integral, points)
 
 
@@ -129,7 +135,7 @@ def in_chunks(function, points: np.ndarray, chunk: int):
 def check_reference(form: type[Form], seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Give points (n, axes) all over a form's domain, its boundary included, and exact values."""
     name = form.integral.name
-    points = spread_points(name, form.axes, CHECK_EXPONENT[name], seed)
+    points = spread_points(name, form.axes, COUNTS[name].checked, seed)
     return points, exact_values(form.integral, points)
 
 

@@ -5,8 +5,6 @@ where the goal asks for it; then coefficients are rounded in turns, those that m
 and the others are fitted again.
 """
 
-from dataclasses import replace
-
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -14,7 +12,14 @@ from jax import Array
 
 from fitting.bounds import certify_range
 from fitting.certificate import certify_denominators
-from fitting.errors import check_reference, form_values, measure, off_grid_errors
+from fitting.errors import (
+    check_reference,
+    climb,
+    exact_values,
+    form_values,
+    measure,
+    off_grid_errors,
+)
 from fitting.fit import Fit, Progress
 from fitting.form import Form
 from fitting.goal import Goal
@@ -28,8 +33,9 @@ from fitting.minimax import (
     minimise_largest,
     residuals,
 )
-from fitting.samples import SEED, Sample, sample_of, scale_at
+from fitting.samples import SEED, Sample, sample_at, sample_of, scale_at
 from fitting.solve import solve_nonlinear
+from fitting.spread import COUNTS
 
 # Steps, and fewer for forms of many coefficients, which step slowly.
 STEPS, STEPS_OF_MANY, MANY = 1000, 200, 20
@@ -37,8 +43,9 @@ STEPS, STEPS_OF_MANY, MANY = 1000, 200, 20
 PENALTY_FLOOR = 1e-2
 # Iterations that multiply a quotient's error by its last denominator.
 LINEARISED = 8
-# Times that the worst points of a finer set are added, and how many.
-EXCHANGES, EXCHANGED = 2, 300
+# The worst points of elsewhere are added at most this many times, so many of a finer set, until
+# none of them has an error that is larger by this part.
+EXCHANGES, EXCHANGED, SETTLED = 8, 300, 1e-3
 # Denominators are shown to be above this.
 ENOUGH = 1e-6
 # Values of forms of more arguments are not bounded in any number of boxes that can be held.
@@ -163,23 +170,42 @@ def _is_good(problem: Residuals, z: np.ndarray) -> bool:
 
 
 def _least_largest(form, sample: Sample, goal: Goal, weight, start) -> tuple[np.ndarray, Sample]:
-    """Minimise the largest error, with the worst points of a finer set added in turn."""
-    found = minimise_largest(_problem(form, sample, goal), start, goal.side)
-    points, exact = check_reference(form, SEED + 2)
-    for _ in range(EXCHANGES if len(found) else 0):
-        scale = scale_at(points, exact, form, goal, weight)
-        finer = Sample(points, exact, sample.error, scale)
-        problem = _problem(form, finer, goal)
-        size = badness(problem.values(found), *limits(problem, goal.side))
-        worst = np.argsort(-size)[:EXCHANGED]
-        sample = replace(
-            sample,
-            points=np.concatenate([sample.points, points[worst]]),
-            exact=np.concatenate([sample.exact, exact[worst]]),
-            scale=np.concatenate([sample.scale, finer.scale[worst]]),
-        )
+    """Minimise the largest error, with the worst points of elsewhere added in turn.
+
+    Gives the coefficients whose largest error, elsewhere too, is least.
+    """
+    best, least, found = start, np.inf, start
+    for turn in range(EXCHANGES if len(start) else 0):
         found = minimise_largest(_problem(form, sample, goal), found, goal.side)
-    return found, sample
+        worst, size = _worst_elsewhere(form, found, goal, weight, SEED + 2 + turn)
+        problem = _problem(form, sample, goal)
+        known = badness(problem.values(found), *limits(problem, goal.side)).max()
+        if max(known, size) < least:
+            best, least = found, max(known, size)
+        if size <= known * (1 + SETTLED):
+            break
+        sample = sample.extended(worst)
+    return best, sample
+
+
+def _worst_elsewhere(form, found: np.ndarray, goal: Goal, weight, seed: int):
+    """Give the worst points of a finer set and what is found uphill from them, and how bad."""
+
+    def size(points: np.ndarray, exact: np.ndarray) -> np.ndarray:
+        scale = scale_at(points, exact, form, goal, weight)
+        problem = _problem(form, Sample(points, exact, 0.0, scale), goal)
+        return badness(problem.values(found), *limits(problem, goal.side))
+
+    def size_at(points: np.ndarray) -> np.ndarray:
+        return size(points, exact_values(form.integral, points))
+
+    points, exact = check_reference(form, SEED + 2)
+    sizes = size(points, exact)
+    worst = points[np.argsort(-sizes)[:EXCHANGED]]
+    if COUNTS[form.integral.name].climbs:
+        worst = np.concatenate([worst, climb(size_at, points, sizes, form.axes, seed)])
+    worst = sample_at(worst, form, goal, weight)
+    return worst, float(size(worst.points, worst.exact).max())
 
 
 def _rounded(form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:

@@ -9,11 +9,9 @@ from fitting.errors import exact_estimates
 from fitting.form import Form
 from fitting.goal import LEAST_SQUARES, Goal
 from fitting.grid import Weight, measure_of_lights
-from fitting.spread import spread_points
+from fitting.spread import COUNTS, spread_points
 from integrals import INTEGRALS, Axis, Estimate
 
-# log₂ of the number of points inside; half as many are on the faces, as many about the fibre.
-SIZES = {"ps": 13, "g": 13, "q": 11, "r": 11, "velvet": 11}
 SEED = 20200819
 
 
@@ -29,12 +27,29 @@ class Sample:
     error: float
     scale: np.ndarray
 
+    def extended(self, other: "Sample") -> "Sample":
+        """Give this with the points of another."""
+        return Sample(
+            np.concatenate([self.points, other.points]),
+            np.concatenate([self.exact, other.exact]),
+            max(self.error, other.error),
+            np.concatenate([self.scale, other.scale]),
+        )
+
 
 def sample_of(form: type[Form], goal: Goal = LEAST_SQUARES, weight: Weight = "uniform") -> Sample:
     """Give the points that a form is fitted on; `weight` is the measure of lights of P_s."""
     name = form.integral.name
-    points = spread_points(name, form.axes, SIZES[name], SEED)
-    estimates = _estimates(name, form.axes)
+    points = spread_points(name, form.axes, COUNTS[name].fitted, SEED)
+    return _sample(points, _estimates(name, form.axes), form, goal, weight)
+
+
+def sample_at(points: np.ndarray, form: type[Form], goal: Goal, weight: Weight) -> Sample:
+    """Give the sample of the same fit at other points."""
+    return _sample(points, exact_estimates(form.integral, points), form, goal, weight)
+
+
+def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, weight: Weight) -> Sample:
     exact, error = np.asarray(estimates.value), float(np.max(estimates.error))
     return Sample(points, exact, error, scale_at(points, exact, form, goal, weight))
 
@@ -58,4 +73,4 @@ def scale_at(
 
 @functools.lru_cache(maxsize=16)
 def _estimates(name: str, axes: tuple[Axis, ...]) -> Estimate:
-    return exact_estimates(INTEGRALS[name], spread_points(name, axes, SIZES[name], SEED))
+    return exact_estimates(INTEGRALS[name], spread_points(name, axes, COUNTS[name].fitted, SEED))

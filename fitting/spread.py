@@ -3,11 +3,35 @@
 G is steep as d and ν fall, and P_s about the fibre at the scale of α: there are more points there.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fitting.grid import off_grid_points
 from integrals import Axis
 
+
+@dataclass(frozen=True)
+class Counts:
+    """log₂ of how many points a quantity's forms are fitted on, checked at, and judged by.
+
+    `spread_points` adds half as many on the faces. `climbs` says whether larger errors are sought
+    uphill from the worst: not of R, which is smooth in its two variables and dear.
+    """
+
+    fitted: int
+    checked: int
+    judged: int
+    climbs: bool = True
+
+
+COUNTS = {
+    "ps": Counts(fitted=13, checked=15, judged=17),
+    "g": Counts(fitted=13, checked=15, judged=16),
+    "q": Counts(fitted=11, checked=13, judged=16),
+    "r": Counts(fitted=11, checked=10, judged=12, climbs=False),
+    "velvet": Counts(fitted=11, checked=13, judged=16),
+}
 # Points that are stretched beyond the domain by this and put back lie on its faces.
 STRETCH = 1.25
 # P_s varies within this many α of the fibre's direction.

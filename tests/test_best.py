@@ -71,9 +71,9 @@ def test_one_table_is_better_for_no_more_operations_and_one_ten_times_better(qua
         ("q", 9, 2e-5),
         ("g", 13, 5e-3),
         ("r", 36, 1e-4),
-        ("ps", 15, 0.075),
-        ("ps", 25, 0.02),
-        ("ps", 40, 4e-3),
+        ("ps", 15, 0.067),
+        ("ps", 25, 0.0155),
+        ("ps", 40, 2.5e-3),
     ],
 )
 def test_an_error_is_reached_within_a_budget(quantity, budget, most):
