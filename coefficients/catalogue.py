@@ -27,6 +27,7 @@ PUBLISHED = ("ps", "g", "q", "r")
 SINGLE_FORMS = {**PAPER_FORMS, ConservativeNorm.name: ConservativeNorm}
 # A published table with this behind its name is taken as printed, its errata left in.
 AS_PRINTED = "@printed"
+_STEMS = {*(f"refit/{q}" for q in QUANTITIES), *(f"published/{q}" for q in PUBLISHED)}
 _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
 
 
@@ -52,17 +53,9 @@ def load(name: str) -> Table:
     A published table is corrected by its errata unless '@printed' follows its name. Raises
     ValueError for a name that is neither, and for a file that is no valid table.
     """
-    stem, printed, rest = name.partition(AS_PRINTED)
-    folder, _, quantity = stem.rpartition("/")
-    if rest == "" and folder == "best" and not printed and stem in names_of_best():
-        return read(FOLDER / f"{stem}.json")
-    known = PUBLISHED if folder == "published" else QUANTITIES
-    if rest == "" and folder in ("", "refit", "published") and quantity in known:
-        table = read(FOLDER / (folder or "refit") / f"{quantity}.json")
-        if not printed:
-            return corrected(table)
-        if folder == "published":
-            return table
+    if is_known(name):
+        table = read(FOLDER / f"{_stem(name)}.json")
+        return table if name.endswith(AS_PRINTED) else corrected(table)
     # os.path, unlike Path, takes a name that is too long for one that does not exist.
     if name.endswith(".json") or os.path.isfile(name):
         return corrected(read(Path(name)))
@@ -70,8 +63,25 @@ def load(name: str) -> Table:
     raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
 
 
+def is_known(name: str) -> bool:
+    """Tell whether a name is one of the tables that are kept here, and no file's path."""
+    stem = _stem(name)
+    if name.endswith(AS_PRINTED):
+        return stem.startswith("published/") and stem in _STEMS
+    return stem in _STEMS or stem in names_of_best()
+
+
+def _stem(name: str) -> str:
+    """Give the path of a name's file in FOLDER, without its ending."""
+    stem = name.removesuffix(AS_PRINTED)
+    return stem if "/" in stem else f"refit/{stem}"
+
+
 def corrected(table: Table) -> Table:
-    """Apply the errata that a published table records; others are returned as they are."""
+    """Apply the errata that a published table records; others are returned as they are.
+
+    What is applied is not left to be applied again, when the table is written and read.
+    """
     if table.publication is None:
         return table
     rows = list(range(len(table.coefficients)))
@@ -81,7 +91,13 @@ def corrected(table: Table) -> Table:
             if not (0 <= first < len(rows) and 0 <= second < len(rows)):
                 raise ValueError(f"erratum {erratum.id} exchanges rows that do not exist")
             rows[first], rows[second] = rows[second], rows[first]
-    return table.model_copy(update={"coefficients": [table.coefficients[row] for row in rows]})
+    applied = [each.model_copy(update={"exchange_rows": None}) for each in table.publication.errata]
+    return table.model_copy(
+        update={
+            "coefficients": [table.coefficients[row] for row in rows],
+            "publication": table.publication.model_copy(update={"errata": applied}),
+        }
+    )
 
 
 def form_of(table: Table) -> Form:

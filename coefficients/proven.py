@@ -2,20 +2,55 @@
 
 import math
 
-from coefficients.table import Table
+from coefficients.catalogue import form_of, is_known, load
+from coefficients.table import Certificates
+from fitting import Form
+from fitting.bounds import certify_range
+from fitting.certificate import certify_denominators
+from fitting.improve import ENOUGH
+from fitting.velvet import ConservativeNorm, certify_conservative
 
 _DIGITS = 1e4
 
 
-def proven(table: Table) -> list[str]:
-    """Say what a table's certificates prove, a phrase each, numbers rounded to the safe side."""
-    certificates = table.certificates
+def proofs(name: str) -> list[str]:
+    """Say what is proven of a table by name; of a file, which may state what it likes, anew."""
+    table = load(name)
+    if is_known(name):
+        return proven(table.certificates)
+    found = certified(form_of(table), table.certificates)
+    return proven(found) if found else ["nothing: a denominator may vanish"]
+
+
+def certified(form: Form, stated: Certificates | None) -> Certificates | None:
+    """Certify a form anew, as far as `stated`: what a file says of its table is no proof.
+
+    None where denominators are not shown to be positive.
+    """
+    enough = stated.denominator_bound if stated is not None else None
+    found = certify_denominators(form, enough or ENOUGH)
+    if not found.holds:
+        return None
+    values = certify_range(form)
+    return Certificates(
+        denominator_bound=found.bound if math.isfinite(found.bound) else None,
+        boxes=found.boxes,
+        range=None if values is None else [values.lower, values.upper],
+        conservative_bound=certify_conservative(form).bound
+        if isinstance(form, ConservativeNorm)
+        else None,
+    )
+
+
+def proven(certificates: Certificates | None) -> list[str]:
+    """Say what certificates prove, a phrase each, numbers rounded to the safe side."""
     if certificates is None:
         return []
     bound, values = certificates.denominator_bound, certificates.range
     found = ["no denominator" if bound is None else f"denominators ≥ {_below(bound, 3)}"]
     if values is not None:
-        low = math.floor(values[0] * _DIGITS) / _DIGITS
+        low = max(math.floor(values[0] * _DIGITS) / _DIGITS, 0.0)
+        # What is above one is so by the proof's own rounding.
         high = min(math.ceil(values[1] * _DIGITS) / _DIGITS, 1.0)
         found.append(f"values in [{low:g}, {high:g}]")
     if (certificates.conservative_bound or 0) > 0:

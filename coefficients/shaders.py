@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coefficients.catalogue import form_of, load
-from coefficients.proven import proven
 from coefficients.signatures import COSINE, REMARKS, arguments, light_cosines, signature
 from coefficients.table import Table
 from fitting import Form
@@ -27,7 +26,6 @@ class Shader:
     `functions` are called one after the other: each takes the results of the one before it,
     followed by its own entry of `columns(points)`, for points (n, axes) of `axes`. The last gives
     the value that approximates `integral`. `form` is what was fitted; None: the closed form.
-    `proven` is what is known of its values on the whole domain.
     """
 
     quantity: str
@@ -38,7 +36,6 @@ class Shader:
     columns: Callable[[np.ndarray], tuple[np.ndarray, ...]]
     form: Form | None = None
     remark: str | None = None
-    proven: tuple[str, ...] = ()
 
 
 def functions_of(table: Table, name: str | None = None) -> tuple[Function, ...]:
@@ -104,7 +101,6 @@ def shader(name: str, precision: str = "float", function_name: str | None = None
         functools.partial(arguments, table.quantity),
         form,
         REMARKS[table.quantity],
-        tuple(proven(table)),
     )
 
 

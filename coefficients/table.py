@@ -14,6 +14,9 @@ SCHEMA = "shadefit.table/1"
 MAX_BYTES = 4 << 20
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[Number, Field(gt=0)]
+# What is proven to lie in [0, 1] does so but for the rounding of the proof.
+Fraction = Annotated[Number, Field(ge=-1e-11, le=1 + 1e-11)]
 Text = Annotated[str, Field(max_length=2000)]
 Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$")]
 Vector = Annotated[list[Number], Field(max_length=4096)]
@@ -104,11 +107,17 @@ class Certificates(_Part):
     the form leaves (fitting/velvet.py).
     """
 
-    denominator_bound: Number | None = None
+    denominator_bound: Positive | None = None
     boxes: Annotated[int, Field(ge=0)]
-    range: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
-    least_error: Annotated[Number, Field(ge=0)] | None = None
+    range: Annotated[list[Fraction], Field(min_length=2, max_length=2)] | None = None
+    least_error: Positive | None = None
     conservative_bound: Number | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        if self.range is not None and not self.range[0] <= self.range[1]:
+            raise ValueError(f"range {self.range} is empty")
+        return self
 
 
 class Provenance(_Part):

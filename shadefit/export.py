@@ -9,6 +9,7 @@ import numpy as np
 from coefficients.catalogue import load
 from coefficients.cost import Cost, count
 from coefficients.printer import write
+from coefficients.proven import proofs
 from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
 from coefficients.table import serialise, write_whole
 from coefficients.targets import PRECISIONS, target
@@ -111,8 +112,9 @@ def _header(
     }
     if chosen.remark:
         head["Arguments"] = chosen.remark
-    if chosen.proven:
-        head["Proven in exact arithmetic"] = "; ".join(chosen.proven)
+    known = [] if chosen.form is None else proofs(name)
+    if known:
+        head["Proven in exact arithmetic"] = "; ".join(known)
     own = None
     if chosen.form is None:
         # The same points and steps, without the precision's roundings.

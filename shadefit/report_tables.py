@@ -85,7 +85,7 @@ def _operations(mark: Mark, quantity: str) -> str:
 
 
 def _certificate(table: Table | None) -> str:
-    return "—" if table is None or table.certificates is None else "; ".join(proven(table))
+    return "—" if table is None else "; ".join(proven(table.certificates)) or "—"
 
 
 def errata() -> str:

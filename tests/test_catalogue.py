@@ -114,6 +114,15 @@ def test_a_name_is_not_taken_from_the_folder_that_one_is_in(tmp_path, monkeypatc
         load("ps.json")
 
 
+@pytest.mark.parametrize("name", names())
+def test_a_table_that_is_written_and_read_is_the_same(name, tmp_path):
+    """Errata that are applied are not applied again; as printed, they are, as to any file."""
+    table, path = load(name), tmp_path / "table.json"
+    path.write_text(serialise(table))
+    assert load(str(path)) == corrected(table)
+    assert corrected(corrected(table)) == corrected(table)
+
+
 @pytest.mark.parametrize("rows", [[3, 6], [-1, 3], [0, 100]])
 def test_an_erratum_about_rows_that_do_not_exist_is_refused(rows):
     data = json.loads(serialise(load("published/ps@printed")))

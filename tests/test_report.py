@@ -105,11 +105,11 @@ def test_the_summary_says_what_was_measured(monkeypatch):
     assert cells[row + 1 : row + 8] == [
         *("Eq. (4)", "2", "5", "4.000e-03", "0.4", "3.000e-02", "1.5"),
     ]
-    assert cells[row + 8] == "; ".join(proven(load("q")))
+    assert cells[row + 8] == "; ".join(proven(load("q").certificates))
 
 
 def test_a_certificate_is_what_the_table_records():
-    assert report_tables._certificate(load("g")) == "; ".join(proven(load("g")))
+    assert report_tables._certificate(load("g")) == "; ".join(proven(load("g").certificates))
     assert report_tables._certificate(load("published/g")) == "—"
     assert report_tables._certificate(None) == "—"
 

@@ -134,6 +134,8 @@ KEYWORDS = {
     "const": lambda value, wanted: value == wanted,
     "enum": lambda value, wanted: value in wanted,
     "minimum": lambda value, least: value >= least,
+    "maximum": lambda value, most: value <= most,
+    "exclusiveMinimum": lambda value, least: value > least,
     "minItems": lambda value, least: len(value) >= least,
     "maxItems": lambda value, most: len(value) <= most,
     "maxLength": lambda value, most: len(value) <= most,
