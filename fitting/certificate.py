@@ -1,22 +1,22 @@
-"""Certificates: bounds of a form over its whole domain, not at samples of it."""
+"""Certificates: a form has no pole and no NaN on its whole domain, not only at samples of it."""
 
-from dataclasses import dataclass, replace
-from itertools import product
+from dataclasses import dataclass
 
 import numpy as np
 
-from fitting.form import Form
+from fitting.branch import bound_output
+from fitting.form import Form, box_of, constant, traced
 from fitting.interval import enclose
-from integrals import Axis
-from programs.function import Function, Parameter
-from programs.program import Program, evaluate, is_value
-from programs.trace import trace
+from programs.program import Program, is_value, part
 
-# Boxes are split until the bound is within this factor of a value that is attained.
+# Bounds are within this factor of a value that is attained.
 TIGHTNESS = 0.9
-MAX_BOXES = 400_000
-# A box that has shrunk to this part of the domain without a positive bound may well hold a zero.
-SMALLEST_BOX = 1e-9
+# Sums and products: none that is zero is rounded below this.
+NOWHERE_NEGATIVE = (-1e-300, np.inf)
+POSITIVE = (np.nextafter(0, 1), np.inf)
+# Of a root and a logarithm the operand, and what is allowed of it. All operations but these and the
+# division that have an interval version are defined everywhere.
+ALLOWED = {"sqrt": NOWHERE_NEGATIVE, "log": POSITIVE}
 
 
 @dataclass(frozen=True)
@@ -31,99 +31,55 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether no denominator vanishes."""
+        """Whether no denominator vanishes, and no root or logarithm is of a negative number."""
         return self.bound > 0
 
 
 def certify_denominators(form: Form, enough: float = np.inf) -> Certificate:
     """Bound every divisor in a form's expression from below, over the form's whole domain.
 
-    A bound of `enough` is not improved upon.
+    Radicands are shown not to be negative, and arguments of logarithms to be positive. A bound of
+    `enough` is not improved upon. Raises ValueError for an operation that has no interval version.
     """
-    relaxed = form.relaxed()
-    if relaxed is not None:
-        found = _bound_divisors(traced(form, *relaxed), relaxed[1], enough)
-        if found.holds:
-            return found
-    return _bound_divisors(as_program(form), form.axes, enough)
+    call, axes = constant(form).unguarded()
+    program, box = traced(form, call, axes), box_of(axes)
+    # What has no interval version may have poles of its own.
+    enclose(program, *box.T[:, None])
+    bound, boxes = np.inf, 0
+    for operand in operands(program, "div", 1):
+        found = bound_below(part(program, [operand]), box, enough)
+        bound, boxes = min(bound, found.bound), boxes + found.boxes
+        if not found.holds:
+            return Certificate(-np.inf, boxes)
+    for operation, allowed in ALLOWED.items():
+        for operand in operands(program, operation, 0):
+            found = bound_output(part(program, [operand]), box, allowed, within(allowed))
+            boxes += found.boxes
+            if not np.isfinite(found.lower):
+                return Certificate(-np.inf, boxes)
+    return Certificate(bound, boxes)
 
 
-def _bound_divisors(program: Program, axes: tuple[Axis, ...], enough: float) -> Certificate:
-    found = divisors(program)
-    if not found.outputs:
-        return Certificate(np.inf, 0)
-    lower = np.array([axis.lower for axis in axes])
-    upper = np.array([axis.upper for axis in axes])
-    return bound_below(found, lower, upper, enough)
-
-
-def as_program(form: Form) -> Program:
-    """Trace a form, its coefficients constants, as a function of its axes."""
-    return traced(form, type(form)(np.asarray(form.coefficients)), form.axes)
-
-
-def traced(form: Form, call, axes: tuple[Axis, ...], results: int | None = None) -> Program:
-    """Trace a function of a form on some axes: of a scalar, or of a tuple of `results`."""
-    parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
-    summary = f"{form.integral.symbol} by {form.equation}"
-    return trace(Function(form.integral.name, summary, parameters, results, "value", call))
-
-
-def divisors(program: Program) -> Program:
-    """Give the program whose outputs are the divisors of a program's divisions."""
-    found = {
-        step.operands[1]
-        for step in program.steps
-        if step.operation == "div" and is_value(step.operands[1])
-    }
-    return replace(program, outputs=tuple(sorted(found)))
-
-
-def bound_below(
-    program: Program, lower: np.ndarray, upper: np.ndarray, enough: float = np.inf
-) -> Certificate:
-    """Bound all outputs of a program from below on the box [lower, upper], by branch and bound.
+def bound_below(program: Program, box: np.ndarray, enough: float = np.inf) -> Certificate:
+    """Bound a program's only output from below on a box (inputs, 2).
 
     The bound is within `TIGHTNESS` of the least output that is attained, or at least `enough`, if
-    that is positive and boxes within the limits on their number and size show it; else it is −∞.
+    that is positive and it can be shown; else it is −∞.
     """
-    low, high = lower[None], upper[None]
-    # An input that the outputs do not depend on is never split.
-    used = np.array([k in reached(program) for k in range(len(lower))]) & (upper > lower)
-    scale = np.where(used, upper - lower, np.inf)
-    # No box's middle is a corner of the domain, where a denominator is often least.
-    corners = np.array(list(product(*zip(lower, upper, strict=True))))
-    attained, proven, boxes = evaluate(program, corners).min(), np.inf, 0
-    while len(low):
-        # np.minimum, unlike min, keeps a NaN
-        attained = np.minimum(attained, evaluate(program, (low + high) / 2).min())
-        boxes += len(low)
-        smallest = np.min(np.max((high - low) / scale, axis=1))
-        if not attained > 0 or boxes > MAX_BOXES or smallest < SMALLEST_BOX:
-            return Certificate(-np.inf, boxes)
-        bounds = np.min([each.lower for each in enclose(program, low, high)], axis=0)
-        done = bounds >= min(TIGHTNESS * attained, enough)
-        proven = min(proven, bounds[done].min(initial=np.inf))
-        low, high = low[~done], high[~done]
-        low, high = split(low, high, (high - low) / scale)
-    return Certificate(float(proven), boxes)
+
+    def settled(below, above, least, most):
+        return below >= min(TIGHTNESS * least, enough)
+
+    found = bound_output(program, box, POSITIVE, settled)
+    return Certificate(found.lower, found.boxes)
 
 
-def reached(program: Program) -> set[int]:
-    """Give the numbers of the values that a program's outputs depend on, inputs included."""
-    needed = {operand for operand in program.outputs if is_value(operand)}
-    first = len(program.inputs)
-    for number in range(first + len(program.steps) - 1, first - 1, -1):
-        if number in needed:
-            needed.update(filter(is_value, program.steps[number - first].operands))
-    return needed
+def within(allowed: tuple[float, float]):
+    """Tell which boxes need not be split to show that all values are allowed."""
+    return lambda below, above, least, most: (below >= allowed[0]) & (above <= allowed[1])
 
 
-def split(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Split every box in two along its longest side: of those of largest `size` (boxes, inputs)."""
-    side = np.argmax(size, axis=1)
-    rows = np.arange(len(low))
-    middle = (low[rows, side] + high[rows, side]) / 2
-    left_high, right_low = high.copy(), low.copy()
-    left_high[rows, side] = right_low[rows, side] = middle
-    return np.concatenate([low, right_low]), np.concatenate([left_high, high])
+def operands(program: Program, operation: str, place: int) -> list[int]:
+    """Give the values that are operands of an operation, by their place among them."""
+    found = {step.operands[place] for step in program.steps if step.operation == operation}
+    return sorted(filter(is_value, found))

@@ -7,7 +7,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from fitting.bounds import Range, certify_range
+from fitting.bounds import certify_range
+from fitting.branch import Bounds
 from fitting.cells import DIRECTIONS_PER_ANGLE, fit_cells, largest_error
 from fitting.certificate import Certificate, certify_denominators
 from fitting.errors import Errors, exact_estimates, form_values, measure, off_grid_errors
@@ -43,7 +44,7 @@ class Fit:
     certificate: Certificate
     goal: Goal = LEAST_SQUARES
     lower_bound: float | None = None
-    range: Range | None = None
+    range: Bounds | None = None
     conservative_bound: float | None = None
 
 

@@ -10,6 +10,9 @@ import numpy as np
 from jax import Array
 
 from integrals import Axis, Integral
+from programs.function import Function, Parameter
+from programs.program import Program
+from programs.trace import trace
 
 
 class Form(eqx.Module):
@@ -48,12 +51,12 @@ class Form(eqx.Module):
         """Give a₀, a, b₀, b with the form (a₀ + a·c)/(b₀ + b·c) at one point, if it is such."""
         return None
 
-    def relaxed(self) -> tuple[Callable[..., Array], tuple[Axis, ...]] | None:
-        """Give a function of more freedom, and its axes, that has all values of the form.
+    def unguarded(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
+        """Give a function that is the form, and its axes, for proofs that it has no pole.
 
-        What is shown of its denominators holds for the form's.
+        It is without the floors that keep a denominator of the form from being zero.
         """
-        return None
+        return self, self.axes
 
     def margins(self) -> tuple[Callable[..., tuple[Array, ...]], tuple[Axis, ...]] | None:
         """Give what is nowhere negative only if all values are from 0 to 1, and its axes.
@@ -65,3 +68,25 @@ class Form(eqx.Module):
     def positive(self, *arguments) -> Array:
         """Give what must stay positive at one point for the form to have no pole and no NaN."""
         return jnp.ones(())
+
+
+def box_of(axes: tuple[Axis, ...]) -> np.ndarray:
+    """Give the ends (axes, 2) of a domain."""
+    return np.array([(axis.lower, axis.upper) for axis in axes])
+
+
+def as_program(form: Form) -> Program:
+    """Trace a form, its coefficients constants, as a function of its axes."""
+    return traced(form, constant(form), form.axes)
+
+
+def constant(form: Form) -> Form:
+    """Give the form with coefficients that are constants of a trace."""
+    return type(form)(np.asarray(form.coefficients))
+
+
+def traced(form: Form, call, axes: tuple[Axis, ...], results: int | None = None) -> Program:
+    """Trace a function of a form on some axes: of a scalar, or of a tuple of `results`."""
+    parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
+    summary = f"{form.integral.symbol} by {form.equation}"
+    return trace(Function(form.integral.name, summary, parameters, results, "value", call))

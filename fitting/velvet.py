@@ -97,7 +97,7 @@ def certify_conservative(form: ConservativeNorm) -> Certificate:
 
         parameters = (Parameter("phi", (low, high), "rad"),)
         program = trace(Function("room", "B̃ − B over x.", parameters, None, "value", room))
-        certificates.append(bound_below(program, np.array([low]), np.array([high])))
+        certificates.append(bound_below(program, np.array([[low, high]])))
     return Certificate(
         min(each.bound for each in certificates), sum(each.boxes for each in certificates)
     )

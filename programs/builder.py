@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from programs.operations import OPERATIONS
-from programs.program import Operand, Program, Step, is_value
+from programs.program import Operand, Program, Step, is_value, part
 
 
 class Builder:
@@ -49,25 +49,7 @@ class Builder:
 
     def finish(self, name: str, outputs: Sequence[Operand]) -> Program:
         """Close the program: keep the steps that the outputs need, renumbered."""
-        first = len(self.inputs)
-        needed = {operand - first for operand in outputs if is_value(operand)}
-        for index in range(len(self.steps) - 1, -1, -1):
-            if index in needed:
-                needed.update(o - first for o in self.steps[index].operands if is_value(o))
-        kept = [index for index in range(len(self.steps)) if index in needed]
-        number = {first + old: first + new for new, old in enumerate(kept)}
-        number.update({index: index for index in range(first)})
-
-        def renumber(operands: Sequence[Operand]) -> tuple[Operand, ...]:
-            return tuple(number[o] if is_value(o) else float(o) for o in operands)
-
-        steps = (self.steps[index] for index in kept)
-        return Program(
-            name,
-            self.inputs,
-            tuple(replace(step, operands=renumber(step.operands)) for step in steps),
-            renumber(outputs),
-        )
+        return part(Program(name, self.inputs, tuple(self.steps), ()), outputs)
 
     def _append(self, operation: str, operands: tuple[Operand, ...]) -> int:
         # The constant 1.0 is not the value number 1, and 0.0 is not -0.0.

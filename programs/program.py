@@ -1,7 +1,7 @@
 """Straight-line programs: inputs, a list of single assignments, outputs, and their evaluation."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -43,6 +43,35 @@ def is_value(operand: Operand) -> TypeGuard[int]:
     """Tell a number of a value from a constant."""
     # bool is a subclass of int: conditions that are known are constants, no numbers of values.
     return type(operand) is int
+
+
+def reached(program: Program) -> set[int]:
+    """Give the numbers of the values that a program's outputs depend on, inputs included."""
+    needed = {operand for operand in program.outputs if is_value(operand)}
+    first = len(program.inputs)
+    for number in range(first + len(program.steps) - 1, first - 1, -1):
+        if number in needed:
+            needed.update(filter(is_value, program.steps[number - first].operands))
+    return needed
+
+
+def part(program: Program, outputs: Sequence[Operand]) -> Program:
+    """Give the program of some of a program's values: the steps that they need, renumbered."""
+    first = len(program.inputs)
+    needed = reached(replace(program, outputs=tuple(outputs)))
+    kept = [number for number in sorted(needed) if number >= first]
+    renumbered = {**{k: k for k in range(first)}, **{old: first + k for k, old in enumerate(kept)}}
+
+    def moved(operands: Sequence[Operand]) -> tuple[Operand, ...]:
+        return tuple(renumbered[o] if is_value(o) else float(o) for o in operands)
+
+    steps = (program.steps[number - first] for number in kept)
+    return Program(
+        program.name,
+        program.inputs,
+        tuple(replace(step, operands=moved(step.operands)) for step in steps),
+        moved(outputs),
+    )
 
 
 def interpret(

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from coefficients.catalogue import form_of, load, names_of_best
-from fitting import PAPER_FORMS, QuadraticQ, bounds
-from fitting.bounds import FRACTIONS, ROUNDING, TIGHTNESS, bound_values, certify_range
-from fitting.certificate import as_program, traced
+from fitting import PAPER_FORMS, QuadraticQ, branch
+from fitting.bounds import ROUNDING, TIGHTNESS, certify_range
 from fitting.errors import check_reference, form_values
 from fitting.families.ps import cubic_ps, one_root_ps, two_root_ps
+from fitting.form import traced
 from fitting.spread import spread_points
 from programs.program import evaluate
 
@@ -87,17 +87,14 @@ def test_the_published_ps_is_no_fraction():
 def test_a_search_that_finds_no_end_proves_nothing(monkeypatch):
     form = form_of(load("best/g-19"))
     assert certify_range(form) is not None
-    monkeypatch.setattr(bounds, "MAX_BOXES", 5)
+    monkeypatch.setattr(branch, "MAX_BOXES", 5)
     assert certify_range(form) is None
 
 
 def test_bounds_are_tighter_with_more_boxes():
     form = form_of(load("published/r"))
-    box = tuple(np.array([getattr(a, end) for a in form.axes]) for end in ("lower", "upper"))
     values = values_of(form)
-    loose, tight = (
-        bound_values(as_program(form), *box, FRACTIONS, tightness) for tightness in (0.1, 1e-4)
-    )
+    loose, tight = (certify_range(form, tightness) for tightness in (0.1, 1e-4))
     assert loose is not None
     assert tight is not None
     assert loose.boxes < tight.boxes

@@ -5,23 +5,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coefficients.catalogue import form_of, load
-from fitting import PAPER_FORMS, QuadraticQ, RationalG, RationalPs, RationalR, certificate
+from fitting import PAPER_FORMS, QuadraticQ, RationalG, RationalPs, RationalR, branch, certificate
 from fitting.certificate import TIGHTNESS, certify_denominators
+from fitting.families.ps import two_root_ps
+from fitting.form import Form, as_program
 from fitting.paper import terms
+from programs.program import evaluate, part, reached
 
 PUBLISHED = ("ps", "g", "q", "r")
 
 
 def sampled_denominators(form, count: int = 60) -> np.ndarray:
     """Evaluate the divisors of a form on a dense grid of its domain, the ends included."""
-    program = certificate.divisors(certificate.as_program(form))
-    used = certificate.reached(program)
+    program = as_program(form)
+    program = part(program, certificate.operands(program, "div", 1))
+    used = reached(program)
     lines = [
         np.linspace(axis.lower, axis.upper, count if k in used else 1)
         for k, axis in enumerate(form.axes)
     ]
     mesh = np.meshgrid(*lines, indexing="ij")
-    return certificate.evaluate(program, np.stack([each.ravel() for each in mesh], axis=1))
+    return evaluate(program, np.stack([each.ravel() for each in mesh], axis=1))
 
 
 def rational_r(beta: float, gamma: float, delta: float) -> RationalR:
@@ -122,7 +126,7 @@ def test_a_nearly_vanishing_denominator_is_still_certified_tightly():
 
 
 def test_a_search_that_finds_no_end_is_given_up_as_not_proven(monkeypatch):
-    monkeypatch.setattr(certificate, "MAX_BOXES", 10)
+    monkeypatch.setattr(branch, "MAX_BOXES", 10)
     form = rational_r(0, -0.9999 * np.cos(0.7), -0.9999 * np.sin(0.7))
     assert not certify_denominators(form).holds
 
@@ -135,7 +139,7 @@ def test_the_program_of_a_form_is_the_form(form):
     lower = np.array([axis.lower for axis in form.axes])
     upper = np.array([axis.upper for axis in form.axes])
     at = lower + (upper - lower) * random.random((20, len(lower)))
-    values = certificate.evaluate(certificate.as_program(fitted), at)[:, 0]
+    values = evaluate(as_program(fitted), at)[:, 0]
     np.testing.assert_allclose(values, [float(fitted(*x)) for x in at], rtol=1e-13)
 
 
@@ -143,3 +147,53 @@ def test_a_form_without_divisions_needs_no_boxes():
     found = certify_denominators(QuadraticQ(jnp.array([-1.7, 1.2])))
     assert found.holds
     assert found.boxes == 0
+
+
+def test_a_floor_hides_no_pole():
+    """The floor of the denominator is reached: the value at this point is 112,650."""
+    form = two_root_ps(terms=3, degree=0, least_alpha=0.15)(jnp.array([0.3, -3.0, 0.0]))
+    assert abs(float(form(0.5, 0.3, 0.2, 0.0))) > 1e5
+    assert not certify_denominators(form).holds
+
+
+# Functions of d on [0, 0.5] that are infinite or no number somewhere, and ones that are not.
+SINGULAR = {
+    "a root of less than nothing": lambda d: jnp.sqrt((d - 0.3) ** 2 - 1e-9),
+    "a logarithm of nothing": jnp.log,
+    "a quotient within a root": lambda d: jnp.sqrt(1 / (d - 0.2) ** 2),
+}
+REGULAR = {
+    "a root of nothing": jnp.sqrt,
+    "a logarithm that is kept from zero": lambda d: d * jnp.log(jnp.maximum(d, 1e-30)),
+    "a quotient that is kept from zero": lambda d: 1 / jnp.maximum(d - 0.2, 1e-3),
+}
+
+
+def form_of_d(call) -> type[Form]:
+    class OfD(Form):
+        """A function of d."""
+
+        name = "of-d"
+        equation = ""
+        integral = QuadraticQ.integral
+        axes = QuadraticQ.axes
+
+        def __call__(self, d):
+            return call(d)
+
+        @classmethod
+        def coefficient_names(cls):
+            return []
+
+    return OfD
+
+
+@pytest.mark.parametrize("name", [*SINGULAR, *REGULAR])
+def test_roots_and_logarithms_are_certified_too(name):
+    form = form_of_d((SINGULAR | REGULAR)[name])(jnp.zeros(0))
+    assert certify_denominators(form).holds == (name in REGULAR)
+
+
+def test_what_may_have_a_pole_of_its_own_is_refused():
+    with pytest.raises(ValueError, match=r"operation 'tan' .* has no meaning here"):
+        certify_denominators(form_of_d(lambda d: jnp.tan(4 * d))(jnp.zeros(0)))

@@ -3,7 +3,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from fitting import Goal, bounds, form_values, improve
+from fitting import Goal, branch, form_values, improve
 from fitting.errors import check_reference, off_grid_reference
 from fitting.families.ps import cubic_ps, one_root_ps
 from fitting.families.q import pole_q
@@ -91,7 +91,7 @@ def test_least_squares_has_no_side_and_no_bounds():
 
 
 def test_a_bounded_fit_that_is_not_proven_to_be_is_refused(monkeypatch):
-    monkeypatch.setattr(bounds, "MAX_BOXES", 0)
+    monkeypatch.setattr(branch, "MAX_BOXES", 0)
     with pytest.raises(ValueError, match="not shown to be between 0 and 1"):
         improve(Q_FORM, Goal("linf", bounded=True))
 

@@ -10,7 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fitting import interval
-from fitting.certificate import Function, Parameter, Program, trace
+from programs.function import Function, Parameter
+from programs.program import Program
+from programs.trace import trace
 
 INPUTS = 2
 

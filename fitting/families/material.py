@@ -12,6 +12,8 @@ from fitting.form import Form
 from integrals import PS, Axis
 from shading.types import Scalar
 
+COS_PHI = Axis("cos_phi", "cos φ", "1", -1.0, 1.0, "cosine of the light's azimuth")
+
 
 def axes_from(least_alpha: float):
     """Give the axes of P_s with α from `least_alpha`."""
@@ -44,27 +46,29 @@ class MaterialForm(Form):
         cosines = _cosines(theta_f, theta_u, jnp.cos(phi))
         return self.along(self.material(alpha, theta_f), *cosines)
 
-    def relaxed(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
-        """Take the two cosines of the light for independent of each other and of the material."""
-        cosines = (
-            Axis("cos_un", "u·n", "1", 0.0, 1.0, "cosine of the light and the normal"),
-            Axis("cos_ut", "u·t", "1", -1.0, 1.0, "cosine of the light and the fibre"),
-        )
+    def unguarded_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Evaluate the same without floors that keep a denominator from being zero."""
+        return self.along(m, cos_un, cos_ut)
 
-        def value(alpha, theta_f, cos_un, cos_ut):
-            return self.along(self.material(alpha, theta_f), cos_un, cos_ut)
+    def unguarded(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
+        """Give the form without floors, by the cosine of the azimuth."""
 
-        return value, (*self.axes[:2], *cosines)
+        def value(alpha, theta_f, theta_u, cos_phi):
+            cos_un, cos_ut = _cosines(theta_f, theta_u, cos_phi)
+            # It is a cosine, which an interval does not know.
+            cos_ut = jnp.maximum(jnp.minimum(cos_ut, 1.0), -1.0)
+            return self.unguarded_along(self.material(alpha, theta_f), cos_un, cos_ut)
+
+        return value, (*self.axes[:3], COS_PHI)
 
     def margins(self) -> tuple[Callable[..., tuple[Array, ...]], tuple[Axis, ...]]:
         """Give the margins of all directions, by the cosine of the azimuth."""
-        cosine = Axis("cos_phi", "cos φ", "1", -1.0, 1.0, "cosine of the light's azimuth")
 
         def margins(alpha, theta_f, theta_u, cos_phi):
             cosines = _cosines(theta_f, theta_u, cos_phi)
             return self.margins_along(self.material(alpha, theta_f), jnp.cos(theta_f), *cosines)
 
-        return margins, (*self.axes[:3], cosine)
+        return margins, (*self.axes[:3], COS_PHI)
 
     def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Give the radicand or denominator that a fit could make negative."""
@@ -86,7 +90,9 @@ def surface_values(coefficients, count: int, degree: int, alpha, y) -> list[Arra
         functools.reduce(
             jnp.add,
             [
-                coefficients[k * size + n] * alpha**i * y**j if i + j else coefficients[k * size]
+                coefficients[k * size + n] * alpha**i * y**j
+                if i + j
+                else jnp.asarray(coefficients[k * size])
                 for n, (i, j) in enumerate(powers)
             ],
         )

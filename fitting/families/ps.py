@@ -150,13 +150,17 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> type[Form]:
             )
             return m if terms == 4 else (*m, beta * u[4] / q)
 
-        def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        def along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar, least: float = LEAST) -> Array:
             """Evaluate P̃_s of a material at u·n and u·t."""
             c, a = cos_un, cos_ut
             sigma, h, root = _parts(m, c, a)
             t = h + root
-            below = jnp.maximum(sigma * root + _slope(m, c) * c, LEAST)
+            below = jnp.maximum(sigma * root + _slope(m, c) * c, least)
             return 1 - 0.125 * t * (t + m[3] * c) / below
+
+        def unguarded_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+            """Evaluate the same without a floor of the denominator."""
+            return self.along(m, cos_un, cos_ut, -np.inf)
 
         def positive_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
             """Give the denominator over its value at c = 0."""
