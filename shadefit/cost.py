@@ -2,8 +2,9 @@
 
 from dataclasses import asdict
 
-from coefficients.cost import Cost, Throughput, throughput
+from coefficients.cost import Cost
 from coefficients.shaders import EXACT_PS, exact_ps, shader
+from coefficients.throughput import Throughput, throughput
 from programs.function import Function
 from shadefit.export import KINDS, costs
 from shadefit.terminal import print_json, print_table
