@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-import tempfile
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -246,32 +244,6 @@ def serialise(table: Table) -> str:
     """Give a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
     data = table.model_dump(by_alias=True, exclude_none=True)
     return _layout(data, "") + "\n"
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file whole or not at all (`write_whole_bytes`)."""
-    write_whole_bytes(path, text.encode())
-
-
-def write_whole_bytes(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all: to a temporary file beside it, then renamed.
-
-    Raises ValueError where the folder cannot be made or written.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise ValueError(f"{path.parent} cannot be written: {error.strerror}") from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except OSError as error:
-        raise ValueError(f"{path} cannot be written: {error.strerror}") from None
-    finally:
-        Path(temporary).unlink(missing_ok=True)
 
 
 def _refuse_constant(name: str) -> float:

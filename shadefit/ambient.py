@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-from coefficients.table import write_whole_bytes
+from coefficients.files import require_writable, write_whole_bytes
 from shadefit.ambient_energy import energy
 from shadefit.ambient_errors import errors, points, radiances, without_symmetry
 from shadefit.ambient_sheet import draw_ambient
-from shadefit.refit import require_writable
 from shadefit.terminal import place, print_json, print_table, stages
 
 

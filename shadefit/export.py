@@ -8,10 +8,11 @@ import numpy as np
 
 from coefficients.catalogue import load
 from coefficients.cost import Cost, count
+from coefficients.files import write_whole
 from coefficients.printer import write
 from coefficients.proven import proofs
 from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
-from coefficients.table import serialise, write_whole
+from coefficients.table import serialise
 from coefficients.targets import PRECISIONS, target
 from coefficients.toolchains.registry import toolchain
 from coefficients.verify import Difference, Problem, precision_of, run_code, text_of

@@ -1,6 +1,5 @@
 """`shadefit refit`: refit forms to exact values, the paper's or others, and write their tables."""
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -8,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from coefficients.catalogue import QUANTITIES, form_of, from_fit, load, names_of_best
-from coefficients.table import Table, serialise, write_whole
+from coefficients.files import require_writable, write_whole
+from coefficients.table import Table, serialise
 from fitting import Fit, Goal, Weight, improve, refit
 from fitting.goal import LEAST_SQUARES
 from shadefit.terminal import print_json, print_table, stages
@@ -100,15 +100,6 @@ def selection(names: list[str]) -> list[str]:
     if not names or ALL in names:
         return [*QUANTITIES, *(name for name in best if name in names)]
     return [name for name in (*QUANTITIES, *best) if name in names]
-
-
-def require_writable(folder: Path) -> None:
-    """Raise ValueError now, rather than after the work, if files cannot be made in a folder."""
-    existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
-    if not existing.is_dir():
-        raise ValueError(f"{existing} is no folder")
-    if not os.access(existing, os.W_OK | os.X_OK):
-        raise ValueError(f"{folder} cannot be written: Permission denied")
 
 
 def _record(table: Table, file: Path) -> dict:

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.table import write_whole_bytes
+from coefficients.files import require_writable, write_whole_bytes
 from integrals import PS, Axis
-from shadefit.refit import require_writable
 from shadefit.render_fibers import azimuths
 from shadefit.render_functions import table_sets
 from shadefit.render_image import colour, write_exr

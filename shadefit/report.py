@@ -7,13 +7,12 @@ from html import escape
 from importlib.resources import files
 from pathlib import Path
 
-from coefficients.table import write_whole
+from coefficients.files import require_writable, write_whole
 from integrals import INTEGRALS
 from shadefit import report_tables as tables
 from shadefit.explorer import script
 from shadefit.figures import PICTURES, render
 from shadefit.figures.values import quantities
-from shadefit.refit import require_writable
 from shadefit.report_tables import markup
 from shadefit.terminal import stages
 

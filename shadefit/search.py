@@ -14,8 +14,9 @@ from pathlib import Path
 from coefficients.catalogue import PUBLISHED, form_of, from_fit, load, names_of_best
 from coefficients.compare import compare
 from coefficients.cost import count
+from coefficients.files import require_writable, write_whole, write_whole_bytes
 from coefficients.shaders import functions_of
-from coefficients.table import SCHEMA, Table, read, serialise, write_whole, write_whole_bytes
+from coefficients.table import SCHEMA, Table, read, serialise
 from fitting import Form, Goal, improve
 from fitting.families import candidates
 from fitting.grow import grown_r
@@ -23,7 +24,6 @@ from integrals import R
 from programs.trace import trace
 from shadefit.figures.frontier import best_so_far, closed_form
 from shadefit.figures.search import draw
-from shadefit.refit import require_writable
 from shadefit.terminal import print_json, print_table, stages
 
 

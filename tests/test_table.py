@@ -12,8 +12,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from coefficients import table as module
 from coefficients.catalogue import FOLDER
+from coefficients.files import write_whole
 from coefficients.table import (
     MAX_BYTES,
     SCHEMA,
@@ -22,7 +22,6 @@ from coefficients.table import (
     parse,
     read,
     serialise,
-    write_whole,
 )
 
 SHIPPED = sorted([*FOLDER.glob("published/*.json"), *FOLDER.glob("refit/*.json")])
@@ -463,9 +462,9 @@ def test_a_failure_at_any_stage_leaves_the_old_file_and_nothing_else(
         return file
 
     if stage == "write":
-        monkeypatch.setattr(module.os, "fdopen", opened)
+        monkeypatch.setattr(os, "fdopen", opened)
     else:
-        monkeypatch.setattr(module.os, stage, fail)
+        monkeypatch.setattr(os, stage, fail)
     expected = KeyboardInterrupt if isinstance(failure, KeyboardInterrupt) else ValueError
     with pytest.raises(expected) as error:
         write_whole(path, TEXT)

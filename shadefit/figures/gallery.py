@@ -7,13 +7,12 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from coefficients.table import write_whole_bytes
+from coefficients.files import require_writable, write_whole_bytes
 from shadefit.figures.frontier import draw_frontier
 from shadefit.figures.layer import draw_g, draw_g_errors, draw_q
 from shadefit.figures.materials import draw_ps_errors, draw_r, draw_r_errors, draw_rows
 from shadefit.figures.spherical import draw_discs, draw_spherical
 from shadefit.figures.style import render
-from shadefit.refit import require_writable
 
 
 @dataclass(frozen=True)
