@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from coefficients.printer import write
+from coefficients.toolchains.calling import call
 from coefficients.toolchains.process import (
     ToolchainError,
     absent,
@@ -114,26 +115,16 @@ def _compile(
 
 def _driver(function: Function) -> str:
     """Write the loop over all points: one row of inputs after the other, and so the outputs."""
-    arguments, before, row = [], "", 0
-    for parameter in function.parameters:
-        if parameter.size is None:
-            arguments.append(f"in[{row} * n + i]")
-        else:
-            cells = ", ".join(f"in[{row + j} * n + i]" for j in range(parameter.size))
-            before += f"        const float in_{row}[{parameter.size}] = {{{cells}}};\n"
-            arguments.append(f"in_{row}")
-        row += 1 if parameter.size is None else parameter.size
-    call = f"{function.name}({', '.join(arguments)})"
-    body = f"        out[i] = {call};\n"
-    if function.result is not None:
-        call = f"{function.name}({', '.join([*arguments, 'results'])})"
-        body = f"        float results[{function.result}];\n        {call};\n"
-        body += "".join(
-            f"        out[{j} * n + i] = results[{j}];\n" for j in range(function.result)
-        )
+    body = call(
+        function,
+        "float",
+        lambda row: f"in[{row} * n + i]",
+        lambda row: f"out[{row} * n + i] = shadefit_value[{row}];",
+        depth=8,
+    )
     return (
         "\nvoid evaluate_all(long n, const float *restrict in, float *restrict out)\n{\n"
-        f"    for (long i = 0; i < n; ++i) {{\n{before}{body}    }}\n}}\n"
+        f"    for (long i = 0; i < n; ++i) {{\n{body}\n    }}\n}}\n"
     )
 
 

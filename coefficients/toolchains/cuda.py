@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from coefficients.toolchains.calling import call
 from coefficients.toolchains.native import (
     STRICT,
     evaluate_program,
@@ -69,25 +70,12 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 def kernel(function: Function, real: str) -> str:
     """Write a kernel that calls the function, so that the device's half is compiled to the end."""
     count, width = result_count(function), len(input_names(function))
-    lines, arguments, column = [], [], 0
-    for index, parameter in enumerate(function.parameters):
-        name, size = f"shadefit_{index}", parameter.size or 1
-        numbers = ", ".join(f"shadefit_in[{column + cell}]" for cell in range(size))
-        scalar = parameter.size is None
-        lines.append(
-            f"    {real} {name} = {numbers};"
-            if scalar
-            else f"    {real} {name}[{size}] = {{{numbers}}};"
-        )
-        arguments.append(name)
-        column += size
-    if function.result is None:
-        lines.append(f"    shadefit_out[0] = {function.name}({', '.join(arguments)});")
-    else:
-        lines.append(f"    {real} shadefit_value[{count}];")
-        lines.append(f"    {function.name}({', '.join([*arguments, 'shadefit_value'])});")
-        lines += [f"    shadefit_out[{cell}] = shadefit_value[{cell}];" for cell in range(count)]
-    body = "\n".join(lines)
+    body = call(
+        function,
+        real,
+        lambda cell: f"shadefit_in[{cell}]",
+        lambda cell: f"shadefit_out[{cell}] = shadefit_value[{cell}];",
+    )
     return f"""
 __global__ void shadefit_kernel(const {real}* shadefit_in, {real}* shadefit_out) {{
     shadefit_in += {width} * threadIdx.x;

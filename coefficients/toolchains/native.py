@@ -1,4 +1,4 @@
-"""C and its kin on this processor: a program around the function, rows in, values out."""
+"""C, C++ and their kin on this processor: a program around the function, rows in, values out."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.toolchains.process import ToolchainError, execute, first_line, workspace
-from coefficients.toolchains.toolchain import breakdown, refusal, result_count
+from coefficients.toolchains.calling import call
+from coefficients.toolchains.process import ToolchainError, absent, execute, first_line, workspace
+from coefficients.toolchains.toolchain import Toolchain, breakdown, refusal, result_count
 from programs.function import Function, input_names
 
 # No contraction to fma and no fast-math: every operation is rounded once, as NumPy does it.
@@ -15,6 +16,7 @@ from programs.function import Function, input_names
 STRICT = ("-O2", "-ffp-contract=off", "-Werror=double-promotion")
 # Without this, gcc keeps half precision in float between operations.
 HALF = ("-fexcess-precision=16",)
+_REAL = {"half": "_Float16", "float": "float", "double": "double"}
 # 1 + u + u with u half a unit in the last place is 1 when every sum is rounded to half.
 HALF_PROBE = """
 int main(void) {
@@ -32,25 +34,7 @@ def main_program(function: Function, source_file: str, real: str) -> str:
     line numbers are the file's own; `real`, the number type's spelling.
     """
     count, width = result_count(function), len(input_names(function))
-    lines, arguments, column = [], [], 0
-    for index, parameter in enumerate(function.parameters):
-        name = f"shadefit_{index}"
-        if parameter.size is None:
-            lines.append(f"        {real} {name} = ({real})shadefit_row[{column}];")
-        else:
-            cells = range(column, column + parameter.size)
-            parts = ", ".join(f"({real})shadefit_row[{cell}]" for cell in cells)
-            lines.append(f"        {real} {name}[{parameter.size}] = {{{parts}}};")
-        arguments.append(name)
-        column += parameter.size or 1
-    if function.result is None:
-        lines.append(f"        {real} shadefit_value[1];")
-        lines.append(f"        shadefit_value[0] = {function.name}({', '.join(arguments)});")
-    else:
-        arguments.append("shadefit_value")
-        lines.append(f"        {real} shadefit_value[{count}];")
-        lines.append(f"        {function.name}({', '.join(arguments)});")
-    body = "\n".join(lines)
+    body = call(function, real, lambda cell: f"({real})shadefit_row[{cell}]", depth=8)
     return f"""#include "{source_file}"
 #include <stdio.h>
 int main(void) {{
@@ -119,3 +103,29 @@ def half_missing(compiler: str, suffix: str) -> str | None:
         except ToolchainError:
             return f"{first_line(compiler, '--version')} has no _Float16 that rounds every step"
     return None
+
+
+def _native(target: str, language: str, compiler: str, standard: str, suffix: str) -> Toolchain:
+    def absence(precision: str) -> str | None:
+        reason = absent(compiler, compiler)
+        if reason is None and precision == "half":
+            reason = half_missing(compiler, suffix)
+        return reason
+
+    def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
+        extra = HALF if precision == "half" else ()
+        command = (compiler, f"-std={standard}", *STRICT, *extra)
+        real = _REAL[precision]
+        return evaluate_program(
+            language, command, suffix, real, source, function, inputs, precision
+        )
+
+    note = (
+        f"{standard.upper()}, -O2, no contraction to fma; half is _Float16, emulated with every "
+        "step rounded."
+    )
+    return Toolchain(target, absence, evaluate, lambda: first_line(compiler, "--version"), note)
+
+
+C = _native("c", "C", "gcc", "c11", ".c")
+CPP = _native("cpp", "C++", "g++", "c++17", ".cpp")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from coefficients.toolchains.calling import call
 from coefficients.toolchains.lexical import refuse, words
 from coefficients.toolchains.native import STRICT, evaluate_program
 from coefficients.toolchains.process import (
@@ -85,34 +86,20 @@ def probe(function: Function, first: int, folder: Path) -> str:
     Its row is the pixel that is seen; textures of three columns each hold the inputs of the rows.
     """
     count, width = result_count(function), len(input_names(function))
-    lines, arguments, column = [], [], 0
-    for index in range(-(-width // 3)):
-        lines.append(
-            f'    color shadefit_in{index} = texture("{folder}/in{index}.exr", '
-            'shadefit_s, shadefit_t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
-        )
-    for index, parameter in enumerate(function.parameters):
-        name, size = f"shadefit_{index}", parameter.size
-        lines.append(f"    float {name}{'' if size is None else f'[{size}]'};")
-        for cell in range(size or 1):
-            place = name if size is None else f"{name}[{cell}]"
-            lines.append(f"    {place} = shadefit_in{column // 3}[{column % 3}];")
-            column += 1
-        arguments.append(name)
-    lines.append(f"    float shadefit_value[{count}];")
-    if function.result is None:
-        lines.append(f"    shadefit_value[0] = {function.name}({', '.join(arguments)});")
-    else:
-        arguments.append("shadefit_value")
-        lines.append(f"    {function.name}({', '.join(arguments)});")
+    textures = "\n".join(
+        f'    color shadefit_in{index} = texture("{folder}/in{index}.exr", '
+        'shadefit_s, shadefit_t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
+        for index in range(-(-width // 3))
+    )
+    body = call(function, "float", lambda cell: f"shadefit_in{cell // 3}[{cell % 3}]")
     shown = ", ".join(
         f"shadefit_value[{cell}]" if cell < count else "0.0" for cell in range(first, first + 3)
     )
-    body = "\n".join(lines)
     return f"""#include "code.osl"
 shader probe{first}(float columns = 1.0, float rows = 1.0, output closure color Out = 0) {{
     float shadefit_s = (floor(P[0]) + 0.5) / columns;
     float shadefit_t = 1.0 - (floor(P[1]) + 0.5) / rows;
+{textures}
 {body}
     Out = color({shown}) * emission();
 }}

@@ -3,13 +3,12 @@
 from types import ModuleType
 
 from coefficients.toolchains import (
-    c,
-    cpp,
     cuda,
     glsl,
     hlsl,
     javascript,
     metal,
+    native,
     osl,
     python,
     slang,
@@ -23,19 +22,19 @@ def _assembled(target: str, module: ModuleType) -> Toolchain:
 
 
 TOOLCHAINS: dict[str, Toolchain] = {
-    target: _assembled(target, module)
-    for target, module in (
-        ("c", c),
-        ("cpp", cpp),
-        ("hlsl", hlsl),
-        ("glsl", glsl),
-        ("slang", slang),
-        ("metal", metal),
-        ("wgsl", wgsl),
-        ("osl", osl),
-        ("cuda", cuda),
-        ("python", python),
-        ("javascript", javascript),
+    chain.target: chain
+    for chain in (
+        native.C,
+        native.CPP,
+        _assembled("hlsl", hlsl),
+        _assembled("glsl", glsl),
+        _assembled("slang", slang),
+        _assembled("metal", metal),
+        _assembled("wgsl", wgsl),
+        _assembled("osl", osl),
+        _assembled("cuda", cuda),
+        _assembled("python", python),
+        _assembled("javascript", javascript),
     )
 }
 

@@ -1,5 +1,6 @@
 """A compute shader around a function, in the languages that look like C."""
 
+from coefficients.toolchains.calling import call
 from coefficients.toolchains.toolchain import result_count
 from programs.function import Function, input_names
 
@@ -14,27 +15,14 @@ def main_body(function: Function, real: str, stored: str, inputs: str, outputs: 
     of the one in the buffers; `inputs` and `outputs`, the expressions that name the buffers.
     """
     count, width = result_count(function), len(input_names(function))
-    lines, arguments, column = [], [], 0
-    for index, parameter in enumerate(function.parameters):
-        name = f"shadefit_{index}"
-        size = parameter.size
-        lines.append(f"    {real} {name}{'' if size is None else f'[{size}]'};")
-        for cell in range(size or 1):
-            place = name if size is None else f"{name}[{cell}]"
-            number = f"{inputs}[{width}u * shadefit_k + {column}u]"
-            lines.append(f"    {place} = {real}({number});")
-            column += 1
-        arguments.append(name)
-    lines.append(f"    {real} shadefit_value[{count}];")
-    if function.result is None:
-        lines.append(f"    shadefit_value[0] = {function.name}({', '.join(arguments)});")
-    else:
-        arguments.append("shadefit_value")
-        lines.append(f"    {function.name}({', '.join(arguments)});")
-    for cell in range(count):
-        place = f"{outputs}[{count}u * shadefit_k + {cell}u]"
-        lines.append(f"    {place} = {stored}(shadefit_value[{cell}]);")
-    return "\n".join(lines)
+    return call(
+        function,
+        real,
+        lambda cell: f"{real}({inputs}[{width}u * shadefit_k + {cell}u])",
+        lambda cell: (
+            f"{outputs}[{count}u * shadefit_k + {cell}u] = {stored}(shadefit_value[{cell}]);"
+        ),
+    )
 
 
 def hlsl_shader(source: str, function: Function, precision: str) -> str:

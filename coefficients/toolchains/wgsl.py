@@ -3,6 +3,7 @@
 import numpy as np
 
 from coefficients.toolchains import device
+from coefficients.toolchains.calling import call
 from coefficients.toolchains.toolchain import result_count
 from programs.function import Function, input_names
 
@@ -31,27 +32,17 @@ def compute_shader(source: str, function: Function, precision: str) -> str:
     """Write the compute shader around a function."""
     real = _REAL[precision]
     count, width = result_count(function), len(input_names(function))
-    lines, arguments, column = [], [], 0
-    for index, parameter in enumerate(function.parameters):
-        size = parameter.size
-        numbers = ", ".join(
-            f"{real}(shadefit_in[{width}u * shadefit_k + {cell}u])"
-            for cell in range(column, column + (size or 1))
-        )
-        value = numbers if size is None else f"array<{real}, {size}>({numbers})"
-        lines.append(f"    let shadefit_{index} = {value};")
-        arguments.append(f"shadefit_{index}")
-        column += size or 1
-    lines.append(f"    var shadefit_value: array<{real}, {count}>;")
-    if function.result is None:
-        lines.append(f"    shadefit_value[0] = {function.name}({', '.join(arguments)});")
-    else:
-        arguments.append("&shadefit_value")
-        lines.append(f"    {function.name}({', '.join(arguments)});")
-    for cell in range(count):
-        place = f"shadefit_out[{count}u * shadefit_k + {cell}u]"
-        lines.append(f"    {place} = f32(shadefit_value[{cell}]);")
-    body = "\n".join(lines)
+    body = call(
+        function,
+        real,
+        lambda cell: f"{real}(shadefit_in[{width}u * shadefit_k + {cell}u])",
+        lambda cell: (
+            f"shadefit_out[{count}u * shadefit_k + {cell}u] = f32(shadefit_value[{cell}]);"
+        ),
+        scalar="var {name}: {real};",
+        array="var {name}: array<{real}, {size}>;",
+        given="&shadefit_value",
+    )
     # Directives come first, and may be said twice; on the first line, they move no other.
     head = "enable f16; " if precision == "half" else ""
     return f"""{head}{source}
