@@ -1,4 +1,4 @@
-"""Images as files: linear colours to sRGB, and OpenEXR, uncompressed, written and read here."""
+"""Images as files: linear colours to sRGB, and OpenEXR, uncompressed."""
 
 import struct
 
@@ -68,33 +68,3 @@ def write_exr(channels: dict[str, np.ndarray]) -> bytes:
     stacked = np.stack([channels[name] for name in names], axis=1).astype("<f4")
     rows = [struct.pack("<2i", y, line - 8) + stacked[y].tobytes() for y in range(height)]
     return header + offsets + b"".join(rows)
-
-
-def read_exr(data: bytes) -> dict[str, np.ndarray]:
-    """Read what `write_exr` writes. Raises ValueError for any other file."""
-    if len(data) < 8 or struct.unpack_from("<2i", data) != (_MAGIC, _VERSION):
-        raise ValueError("no single-part OpenEXR file of scan lines")
-    attributes, at = {}, 8
-    while data[at]:
-        key, kind, rest = data[at : at + 128].split(b"\0", 2)[:3]
-        at += len(key) + len(kind) + 2
-        (size,) = struct.unpack_from("<i", data, at)
-        attributes[key] = data[at + 4 : at + 4 + size]
-        at += 4 + size
-        del rest
-    if attributes[b"compression"] != b"\0":
-        raise ValueError("compressed OpenEXR: allowed is none")
-    names, listed = [], attributes[b"channels"]
-    while listed[0]:
-        name, listed = listed.split(b"\0", 1)
-        if struct.unpack_from("<i", listed)[0] != _FLOAT:
-            raise ValueError(f"channel {name.decode()!r} is not of 32-bit floats")
-        names.append(name.decode())
-        listed = listed[16:]
-    left, top, right, bottom = struct.unpack("<4i", attributes[b"dataWindow"])
-    width, height = right - left + 1, bottom - top + 1
-    offsets = struct.unpack_from(f"<{height}Q", data, at + 1)
-    count = width * len(names)
-    rows = [np.frombuffer(data, "<f4", count, offset + 8) for offset in offsets]
-    image = np.stack(rows).reshape(height, len(names), width)
-    return {name: image[:, i] for i, name in enumerate(names)}

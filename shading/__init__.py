@@ -29,7 +29,6 @@ from shading.phase import half_vector as half_vector
 from shading.phase import schlick_phase_function as schlick_phase_function
 from shading.phase import velvet_lobe as velvet_lobe
 from shading.phase import velvet_phase_function as velvet_phase_function
-from shading.sampling import phase_density as phase_density
 from shading.sampling import sample_phase_function as sample_phase_function
 from shading.sggx import fiber_matrix as fiber_matrix
 from shading.sggx import fiber_normal_distribution as fiber_normal_distribution

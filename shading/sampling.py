@@ -1,10 +1,9 @@
-"""Directions drawn from the SGGX phase function by its visible normals, with their density."""
+"""Directions drawn from the SGGX phase function by its visible normals."""
 
-import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-from shading.sggx import phase_function, reflect, visible_normal
+from shading.sggx import reflect, visible_normal
 from shading.types import Matrix, Vector
 
 
@@ -15,9 +14,3 @@ def sample_phase_function(root: Matrix, light: Vector, sample: Float[Array, "2"]
     normal has density D(m) (u·m)/σ(u), and dω_v = 4 (u·m) dω_m.
     """
     return reflect(light, visible_normal(root, light, sample))
-
-
-def phase_density(root: Matrix, light: Vector, view: Vector) -> Array:
-    """Give the density of `sample_phase_function` at v, per steradian: p(u, v) itself."""
-    root = jnp.asarray(root)
-    return phase_function(root @ root.T, light, view)

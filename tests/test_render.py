@@ -2,6 +2,7 @@
 
 import io
 import json
+import struct
 
 import jax
 import jax.numpy as jnp
@@ -14,7 +15,7 @@ from shadefit.cli import main
 from shadefit.render import Settings, image, run
 from shadefit.render_fibers import azimuths
 from shadefit.render_functions import table_sets
-from shadefit.render_image import colour, from_srgb, read_exr, srgb, write_exr
+from shadefit.render_image import colour, from_srgb, srgb, write_exr
 from shadefit.render_scene import SCENES, cloth_height
 from shadefit.render_shade import _ROOTS, BACKDROP, sky_coefficients, tabulated
 from shadefit.render_sheet import round_up
@@ -32,6 +33,32 @@ def channels(names, height=3, width=5) -> dict[str, np.ndarray]:
     return {name: rng.normal(size=(height, width)) * 10.0 ** rng.integers(-3, 5) for name in names}
 
 
+def read_exr(data: bytes) -> dict[str, np.ndarray]:
+    """Read what is written here: scan lines of 32-bit floats, not compressed."""
+    assert struct.unpack_from("<2i", data) == (20000630, 2)
+    attributes, at = {}, 8
+    while data[at]:
+        key, kind, _ = data[at:].split(b"\0", 2)
+        at += len(key) + len(kind) + 2
+        (size,) = struct.unpack_from("<i", data, at)
+        attributes[key] = data[at + 4 : at + 4 + size]
+        at += 4 + size
+    assert attributes[b"compression"] == b"\0"
+    names, listed = [], attributes[b"channels"]
+    while listed[0]:
+        name, listed = listed.split(b"\0", 1)
+        assert struct.unpack_from("<i", listed) == (2,)
+        names.append(name.decode())
+        listed = listed[16:]
+    left, top, right, bottom = struct.unpack("<4i", attributes[b"dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    offsets = struct.unpack_from(f"<{height}Q", data, at + 1)
+    count = width * len(names)
+    rows = [np.frombuffer(data, "<f4", count, offset + 8) for offset in offsets]
+    image = np.stack(rows).reshape(height, len(names), width)
+    return {name: image[:, i] for i, name in enumerate(names)}
+
+
 def test_an_exr_file_is_read_back_bit_for_bit():
     written = channels(["R", "G", "B", "sphere.exact.R"])
     read = read_exr(write_exr(written))
@@ -47,12 +74,6 @@ def test_openexr_reads_it_too(tmp_path):
     pixels = library.File(str(path)).channels()["RGB"].pixels
     expected = np.stack([written[name] for name in "RGB"], axis=-1).astype(np.float32)
     np.testing.assert_array_equal(pixels, expected)
-
-
-@pytest.mark.parametrize("data", [b"", b"PNG" * 9, write_exr(channels("Y"))[:4] + b"\2\2\0\0"])
-def test_other_files_are_refused(data):
-    with pytest.raises(ValueError, match="OpenEXR"):
-        read_exr(data)
 
 
 def test_srgb_is_the_standard_up_to_its_shoulder():

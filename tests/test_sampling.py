@@ -10,7 +10,7 @@ from shading import (
     direction,
     fiber_direction,
     fiber_root,
-    phase_density,
+    phase_function,
     sample_phase_function,
 )
 
@@ -28,7 +28,9 @@ ROOTS = {
 LIGHTS = {"high": np.asarray(direction(0.4, 0.2)), "grazing": np.asarray(direction(1.55, 2.0))}
 
 _sample = jax.jit(jax.vmap(sample_phase_function, (None, None, 0)))
-_density = jax.jit(jax.vmap(phase_density, (None, None, 0)))
+_density = jax.jit(
+    jax.vmap(lambda root, u, v: phase_function(root @ root.T, u, v), (None, None, 0))
+)
 
 
 def chance(views, density) -> float:

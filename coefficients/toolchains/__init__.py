@@ -7,6 +7,5 @@ beyond NumPy is imported, and no program is started, before it is asked for.
 
 from coefficients.toolchains.process import ToolchainError as ToolchainError
 from coefficients.toolchains.registry import TOOLCHAINS as TOOLCHAINS
-from coefficients.toolchains.registry import available as available
 from coefficients.toolchains.registry import toolchain as toolchain
 from coefficients.toolchains.toolchain import Toolchain as Toolchain

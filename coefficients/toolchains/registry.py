@@ -48,11 +48,3 @@ def toolchain(target: str) -> Toolchain:
     if target not in TOOLCHAINS:
         raise ValueError(f"target is {target!r}; allowed: {', '.join(TOOLCHAINS)}")
     return TOOLCHAINS[target]
-
-
-def available(precision: str) -> list[tuple[str, str | None]]:
-    """Every target with None where its code can be run here in a precision, else the reason.
-
-    Arguments: `precision`, "half", "float" or "double". Raises ValueError for another name.
-    """
-    return [(target, chain.missing(precision)) for target, chain in TOOLCHAINS.items()]
