@@ -13,10 +13,10 @@ import numpy as np
 
 from fitting import Form
 from fitting.paper import RationalPs, direction_basis
+from integrals import Axis
 from programs.function import Function, Parameter, function
 
 COSINE = (0.0, 1.0)
-_HALF_PI = float(np.pi / 2)
 # c₀ … c₅ of both tables of P_s lie within it for every material.
 _MATERIAL = (-3.0, 3.0)
 
@@ -38,6 +38,10 @@ def arguments(quantity: str, points: np.ndarray) -> tuple[np.ndarray, ...]:
     return _COLUMNS.get(quantity, _all_columns)(points)
 
 
+def _domain(axis: Axis) -> tuple[float, float]:
+    return float(axis.lower), float(axis.upper)
+
+
 def _clamp(value: Any, low: float | None, high: float) -> Any:
     if low is None:
         return jnp.minimum(value, high)
@@ -53,9 +57,11 @@ def _name_terms(alpha: Any, theta_f: Any) -> tuple[Any, Any, Any]:
 
 
 def _of_ps(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
+    alphas, thetas = map(_domain, form.axes[:2])
+
     def material(alpha, theta_f):
-        theta_f = _clamp(theta_f, 0.1, _HALF_PI)
-        alpha = _clamp(alpha, 0.15, 1.0)
+        theta_f = _clamp(theta_f, *thetas)
+        alpha = _clamp(alpha, *alphas)
         _name_terms(alpha, theta_f)
         return tuple(_with(form, coefficients).material(alpha, theta_f))
 
@@ -65,7 +71,7 @@ def _of_ps(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
     return (
         function(
             "CalcFuzzPsCoeffs",
-            (Parameter("alpha", (0.15, 1.0)), Parameter("thetaF", (0.1, _HALF_PI), "rad")),
+            (Parameter("alpha", alphas), Parameter("thetaF", thetas, "rad")),
             material,
             "Coefficients c of FuzzPs for one material (Eq. 2); clamps to the domain.",
             6,
@@ -86,29 +92,25 @@ def _of_ps(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
 
 def _of_material(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
     """Export a form of P_s in its two parts; the material's numbers are the form's own."""
-    alpha_axis, theta_axis = form.axes[:2]
-    low, high = float(alpha_axis.lower), float(alpha_axis.upper)
+    alphas, thetas = map(_domain, form.axes[:2])
     fitted = _with(form, coefficients)
-    alphas, thetas = np.meshgrid(np.linspace(low, high, 33), np.linspace(0, _HALF_PI, 33))
+    nodes = np.meshgrid(np.linspace(*alphas, 33), np.linspace(*thetas, 33))
     sampled = jax.jit(jax.vmap(lambda a, t: jnp.stack(fitted.material(a, t))))
-    largest = float(np.max(np.abs(sampled(alphas.ravel(), thetas.ravel()))))
+    largest = float(np.max(np.abs(sampled(*(each.ravel() for each in nodes)))))
 
     def material(alpha, theta_f):
-        theta_f = _clamp(theta_f, 0.0, _HALF_PI)
-        alpha = _clamp(alpha, low, high)
+        theta_f = _clamp(theta_f, *thetas)
+        alpha = _clamp(alpha, *alphas)
         return tuple(_with(form, coefficients).material(alpha, theta_f))
 
     def value(c, cos_un, cos_ut):
         return _with(form, coefficients).along(c, cos_un, cos_ut)
 
-    count = len(fitted.material(low, 0.0))
+    count = len(fitted.material(alphas[0], thetas[0]))
     return (
         function(
             "CalcFuzzPsCoeffs",
-            (
-                Parameter("alpha", (low, high)),
-                Parameter("thetaF", (float(theta_axis.lower), _HALF_PI), "rad"),
-            ),
+            (Parameter("alpha", alphas), Parameter("thetaF", thetas, "rad")),
             material,
             "What FuzzPs needs to know of one material; clamps to the domain.",
             count,
@@ -128,47 +130,51 @@ def _of_material(form: type[Form], coefficients: np.ndarray) -> tuple[Function, 
 
 
 def _of_g(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
+    densities, cosines = map(_domain, form.axes)
+
     def value(cos_v, density):
-        density = _clamp(density, None, 0.5)
+        density = _clamp(density, None, densities[1])
         return _with(form, coefficients)(density, cos_v)
 
-    parameters = (Parameter("NdotV", (0.001, 1.0)), Parameter("density", (0.001, 0.5)))
+    parameters = (Parameter("NdotV", cosines), Parameter("density", densities))
     summary = f"G ({_printed(form)}); clamps density from above."
     return (function("FuzzGApprox", parameters, value, summary),)
 
 
 def _of_q(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
+    domain = _domain(form.axes[0])
+
     def value(density):
-        density = _clamp(density, None, 0.5)
+        density = _clamp(density, None, domain[1])
         return _with(form, coefficients)(density)
 
     summary = f"Q ({_printed(form)}); clamps density from above."
     name = "FuzzAveragePenetration"
-    return (function(name, (Parameter("density", (0.0, 0.5)),), value, summary),)
+    return (function(name, (Parameter("density", domain),), value, summary),)
 
 
 def _of_r(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
-    low = float(form.axes[0].lower)
+    alphas, thetas = map(_domain, form.axes)
 
     def value(alpha, theta_f):
-        theta_f = _clamp(theta_f, 0.0, _HALF_PI)
-        alpha = _clamp(alpha, low, 1.0)
+        theta_f = _clamp(theta_f, *thetas)
+        alpha = _clamp(alpha, *alphas)
         _name_terms(alpha, theta_f)
         return _with(form, coefficients)(alpha, theta_f)
 
-    parameters = (Parameter("alpha", (low, 1.0)), Parameter("thetaF", (0.0, _HALF_PI), "rad"))
+    parameters = (Parameter("alpha", alphas), Parameter("thetaF", thetas, "rad"))
     summary = f"R ({_printed(form)}); clamps to the domain."
     return (function("FuzzAveragePs", parameters, value, summary),)
 
 
 def _of_velvet(form: type[Form], coefficients: np.ndarray) -> tuple[Function, ...]:
-    low = float(form.axes[0].lower)
+    domain = _domain(form.axes[0])
 
     def value(asymmetry):
-        return _with(form, coefficients)(_clamp(asymmetry, low, 0.0))
+        return _with(form, coefficients)(_clamp(asymmetry, *domain))
 
     summary = "r(k), which scales the velvet phase function, from below; clamps to the domain."
-    return (function("FuzzVelvetNorm", (Parameter("asymmetry", (low, 0.0)),), value, summary),)
+    return (function("FuzzVelvetNorm", (Parameter("asymmetry", domain),), value, summary),)
 
 
 def _printed(form: type[Form]) -> str:

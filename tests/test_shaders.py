@@ -2,6 +2,7 @@
 
 import functools
 import re
+from dataclasses import replace
 
 import jax.numpy as jnp
 import numpy as np
@@ -11,6 +12,7 @@ from coefficients import verify
 from coefficients.catalogue import form_of, load
 from coefficients.printer import write
 from coefficients.shaders import EXACT_PS, exact_ps, functions_of, shader
+from coefficients.signatures import signature
 from coefficients.targets import TARGETS
 from coefficients.toolchains.registry import toolchain
 from coefficients.toolchains.toolchain import Toolchain
@@ -168,6 +170,24 @@ def test_arguments_are_clamped_as_the_listings_clamp_them(name, outside, inside)
     program = trace(functions_of(load(name))[0])
     np.testing.assert_array_equal(
         evaluate(program, np.array(outside)), evaluate(program, np.array(inside))
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "clamped"),
+    [("ps", [1, 1]), ("best/ps-11", [1, 1]), ("g", [0, 1]), ("q", 1), ("r", [1, 1]), ("velvet", 1)],
+)
+def test_a_form_on_another_domain_is_clamped_to_its_own(name, clamped):
+    form = form_of(load(name))
+
+    class Narrow(type(form)):
+        axes = tuple(replace(a, upper=(a.lower + a.upper) / 2) for a in type(form).axes)
+
+    wide, narrow = (signature(each)[0] for each in (form, Narrow(form.coefficients)))
+    corner = np.array([[parameter.domain[1] for parameter in narrow.parameters]])
+    assert (corner < [parameter.domain[1] for parameter in wide.parameters]).all()
+    np.testing.assert_array_equal(
+        evaluate(trace(narrow), corner + 0.01 * np.array(clamped)), evaluate(trace(wide), corner)
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coefficients.toolchains import cuda, hlsl, osl, toolchain
-from coefficients.toolchains.precision import TYPES
+from coefficients.toolchains.precision import number_type
 from programs.function import Function, Parameter
 
 UNIT = (-1.0, 1.0)
@@ -188,7 +188,7 @@ def spread(function, precision, rows=2000):
     width = sum(parameter.size or 1 for parameter in function.parameters)
     special = np.repeat([[-1.0], [-0.0], [0.0], [2.0**-12], [1.0]], width, 1)
     points = np.vstack([special, np.random.default_rng(7).uniform(-1, 1, (rows, width))])
-    return points.astype(TYPES[precision]).astype(np.float64)
+    return points.astype(number_type(precision)).astype(np.float64)
 
 
 PRECISIONS = [(target, precision) for target, kinds in SPELLED.items() for precision in kinds]
@@ -216,31 +216,31 @@ def test_values_are_those_of_numpy(target, precision, function):
     values = ready(target, precision).run(
         source(target, function, precision), function, points, precision
     )
-    expected = reference(function, points, TYPES[precision])
+    expected = reference(function, points, number_type(precision))
     assert values.dtype == np.float64
     exact = target not in FUSING or (target == "osl" and osl.renderer() is None)
-    allowed = 0.0 if exact else FUSED * np.finfo(TYPES[precision]).eps
+    allowed = 0.0 if exact else FUSED * np.finfo(number_type(precision)).eps
     np.testing.assert_allclose(values, expected, rtol=0, atol=allowed)
     if function is FORM and precision != "double":
         # A value that was computed in more and rounded once is within half a unit of the exact
         # one; where each step is rounded, some are not.
         exact = reference(function, points, np.float64)
-        unit = np.spacing(np.abs(exact).astype(TYPES[precision])).astype(np.float64)
+        unit = np.spacing(np.abs(exact).astype(number_type(precision))).astype(np.float64)
         assert (np.abs(values - exact) / unit).max() > 0.75
 
 
 @pytest.mark.parametrize(("target", "precision"), LEAST)
 def test_the_ends_of_the_range_survive(target, precision):
-    largest = float(np.sqrt(np.finfo(TYPES[precision]).max)) / 2
-    smallest = float(np.finfo(TYPES[precision]).tiny)
+    largest = float(np.sqrt(np.finfo(number_type(precision)).max)) / 2
+    smallest = float(np.finfo(number_type(precision)).tiny)
     points = np.array([[-largest], [-1.0], [-smallest], [0.0], [smallest], [largest]])
-    points = points.astype(TYPES[precision]).astype(np.float64)
+    points = points.astype(number_type(precision)).astype(np.float64)
     values = ready(target, precision).run(
         source(target, SCALAR, precision), SCALAR, points, precision
     )
-    expected = reference(SCALAR, points, TYPES[precision])
+    expected = reference(SCALAR, points, number_type(precision))
     assert np.isfinite(expected).all()
-    relative = FUSED * np.finfo(TYPES[precision]).eps
+    relative = FUSED * np.finfo(number_type(precision)).eps
     np.testing.assert_allclose(values, expected, rtol=relative, atol=smallest)
 
 

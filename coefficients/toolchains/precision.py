@@ -2,7 +2,7 @@
 
 import numpy as np
 
-TYPES = {"half": np.float16, "float": np.float32, "double": np.float64}
+from coefficients.targets.spelling import PRECISIONS
 
 
 def number_type(precision: str) -> type[np.floating]:
@@ -10,9 +10,9 @@ def number_type(precision: str) -> type[np.floating]:
 
     Arguments: `precision`, one of "half", "float", "double". Raises ValueError for another name.
     """
-    if precision not in TYPES:
-        raise ValueError(f"precision is {precision!r}; allowed: {', '.join(TYPES)}")
-    return TYPES[precision]
+    if precision not in PRECISIONS:
+        raise ValueError(f"precision is {precision!r}; allowed: {', '.join(PRECISIONS)}")
+    return PRECISIONS[precision]
 
 
 def rounded(values: np.ndarray, precision: str) -> np.ndarray:
