@@ -6,8 +6,9 @@ The fibre is along the normal, and the layer does not shadow the base.
 import jax.numpy as jnp
 from jax import Array
 
+from shading.directions import fiber_direction
 from shading.fuzz import Colour, layer_brdf, roughness_from_spread
-from shading.sggx import fiber_normal_distribution, fiber_projected_area
+from shading.phase import fiber_phase_function
 from shading.types import Scalar, Vector
 
 DENSITY = 0.5
@@ -44,10 +45,7 @@ def deferred_radiance(
     light, view = jnp.asarray(light), jnp.asarray(view)
     cos_u, cos_v = light[2], view[2]
     alpha = roughness_from_spread(SPREAD)
-    between = light + view
-    cos_ht = between[2] / jnp.linalg.norm(between)
-    area = fiber_projected_area(cos_u, alpha)
-    phase = fiber_normal_distribution(cos_ht, alpha) / (4 * area)
+    phase = fiber_phase_function(light, view, fiber_direction(0.0), alpha)
     albedo = jnp.asarray(albedo)
     grazing = jnp.maximum(cos_u, _LEAST_COSINE)
     fuzz = layer_brdf(phase, grazing, cos_v, DENSITY, ALBEDO_RATIO * albedo)

@@ -1,13 +1,42 @@
-"""Schlick's phase function, and the velvet phase function that the talk makes of it.
-
-The fibre-like SGGX phase function is in `shading.sggx` by its parts; here it is put together.
-"""
+"""Phase functions: of SGGX distributions, of fibres, Schlick's, and the talk's velvet."""
 
 import jax.numpy as jnp
 from jax import Array
 
-from shading.sggx import fiber_normal_distribution, fiber_projected_area
-from shading.types import Scalar, Vector
+from shading.sggx import (
+    fiber_normal_distribution,
+    fiber_projected_area,
+    normal_distribution,
+    projected_area,
+)
+from shading.types import Matrix, Scalar, Vector
+
+
+def half_vector(light: Vector, view: Vector) -> Array:
+    """Give the unit vector h along u + v ≠ 0."""
+    between = jnp.asarray(light) + jnp.asarray(view)
+    return between / jnp.linalg.norm(between)
+
+
+def phase_function(matrix: Matrix, light: Vector, view: Vector) -> Array:
+    """Give p(u, v) = D(h) / (4 σ(u)), per steradian; it integrates to one over the sphere of v.
+
+    `light` u and `view` v are unit vectors with u + v ≠ 0; h is the unit vector along u + v.
+    """
+    density = normal_distribution(matrix, half_vector(light, view))
+    return density / (4 * projected_area(matrix, light))
+
+
+def fiber_phase_function(light: Vector, view: Vector, fiber: Vector, alpha: Scalar) -> Array:
+    """Give p_F(u, v) = D_F(h) / (4 σ_F(u)) of a fibre, per steradian.
+
+    `light` u, `view` v and `fiber` t are unit vectors with u + v ≠ 0; `alpha` in (0, 1] is the
+    projected area along t. Not symmetric: p_F(u, v) σ_F(u) = p_F(v, u) σ_F(v).
+    """
+    light, fiber = jnp.asarray(light), jnp.asarray(fiber)
+    cos_ht = half_vector(light, view) @ fiber
+    area = fiber_projected_area(light @ fiber, alpha)
+    return fiber_normal_distribution(cos_ht, alpha) / (4 * area)
 
 
 def schlick_phase_function(asymmetry: Scalar, cosine: Scalar) -> Array:
@@ -41,21 +70,3 @@ def velvet_phase_function(asymmetry: Scalar, cos_ht: Scalar, normalisation: Scal
     largest that creates no energy for any direction of light.
     """
     return jnp.asarray(normalisation) * velvet_lobe(asymmetry, cos_ht)
-
-
-def fiber_phase_function(light: Vector, view: Vector, fiber: Vector, alpha: Scalar) -> Array:
-    """Give p_F(u, v) = D_F(h) / (4 σ_F(u)) of a fibre, per steradian.
-
-    `light` u, `view` v and `fiber` t are unit vectors with u + v ≠ 0; `alpha` in (0, 1] is the
-    projected area along t. Not symmetric: p_F(u, v) σ_F(u) = p_F(v, u) σ_F(v).
-    """
-    light, fiber = jnp.asarray(light), jnp.asarray(fiber)
-    cos_ht = half_vector(light, view) @ fiber
-    area = fiber_projected_area(light @ fiber, alpha)
-    return fiber_normal_distribution(cos_ht, alpha) / (4 * area)
-
-
-def half_vector(light: Vector, view: Vector) -> Array:
-    """Give the unit vector h along u + v ≠ 0."""
-    between = jnp.asarray(light) + jnp.asarray(view)
-    return between / jnp.linalg.norm(between)

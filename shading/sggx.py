@@ -43,16 +43,6 @@ def normal_distribution(matrix: Matrix, normal: Vector) -> Array:
     return determinant**1.5 / (jnp.pi * (normal @ adjugate @ normal) ** 2)
 
 
-def phase_function(matrix: Matrix, light: Vector, view: Vector) -> Array:
-    """Give p(u, v) = D(h) / (4 σ(u)), per steradian; it integrates to one over the sphere of v.
-
-    `light` u and `view` v are unit vectors with u + v ≠ 0; h is the unit vector along u + v.
-    """
-    half = jnp.asarray(light) + jnp.asarray(view)
-    half = half / jnp.linalg.norm(half)
-    return normal_distribution(matrix, half) / (4 * projected_area(matrix, light))
-
-
 def fiber_projected_area(cos_t: Scalar, alpha: Scalar) -> Array:
     """Give the fibre's σ_F = √(1 − (ω·t)²(1 − α²)) from `cos_t` = ω·t."""
     alpha = jnp.asarray(alpha)
