@@ -20,6 +20,7 @@ import numpy as np
 from plain_scipy import directions, lights_of, views
 from plain_scipy import scattered_fraction as by_numpy
 
+from coefficients.signatures import light_cosines
 from fitting.cells import fit_cells
 from fitting.errors import exact_values
 from fitting.grid import trapezoid_grid
@@ -109,19 +110,18 @@ def throughput() -> dict:
     alpha = random.uniform(0.15, 1, count)
     theta_f, theta_u = random.uniform(0, np.pi / 2, (2, count))
     phi = random.uniform(0, np.pi, count)
-    un, nt = np.cos(theta_u), np.cos(theta_f)
-    ut = np.sin(theta_u) * np.cos(phi) * np.sin(theta_f) + un * nt
+    materials = np.column_stack([alpha, theta_f, theta_u, phi])
     rates = {}
     for name, dtype, steps in (
         ("float32", jnp.float32, FLOAT32_STEPS),
         ("float64", jnp.float64, FLOAT64_STEPS),
     ):
         closed = jax.jit(lambda c, a, b, alpha, s=steps: scattered_fraction(c, a, b, alpha, s))
-        values = [jnp.asarray(each, dtype) for each in (un, ut, nt, alpha)]
+        values = [jnp.asarray(each, dtype) for each in (*light_cosines(materials), alpha)]
         assert closed(*values).dtype == dtype
         rates[f"closed form, JAX {name}"] = rate(closed, *values, count=count)
     few = 64
-    points = jnp.asarray(np.column_stack([alpha, theta_f, theta_u, phi])[:few])
+    points = jnp.asarray(materials[:few])
     integral = jax.jit(lambda x: jax.lax.map(lambda p: PS.quadrature(*p).value, x, batch_size=4))
     rates["quadrature of the definition, JAX 256²"] = rate(integral, points, count=few, repeat=3)
     view, weights = views()

@@ -15,6 +15,7 @@ from jax import Array
 from fitting.grid import Grid, Weight, light_directions
 from fitting.paper import RationalPs, direction_basis
 from integrals.ps import scattered_fraction
+from shading import direction_cosines
 
 # 48² = 2,304 directions a cell; 96² change the limit's rms by less than 1e-6 (tests/test_cells.py).
 DIRECTIONS_PER_ANGLE = 48
@@ -80,10 +81,8 @@ def _basis(lights, theta_f):
 
 
 def _cosines(lights, theta_f):
-    theta_u, phi = lights[:, 0], lights[:, 1]
-    cos_un = jnp.cos(theta_u)
-    in_plane = jnp.sin(theta_u) * jnp.cos(phi)
-    return cos_un, in_plane * jnp.sin(theta_f) + cos_un * jnp.cos(theta_f)
+    theta_u, phi = lights.T
+    return jax.vmap(direction_cosines, (None, 0, 0))(theta_f, theta_u, jnp.cos(phi))
 
 
 def _exact(grid: Grid, lights: np.ndarray) -> Array:

@@ -7,6 +7,7 @@ from jax import Array
 
 from fitting.form import Form
 from integrals import PS, G, Q, R
+from shading import direction_cosines
 from shading.types import Scalar
 
 # The terms of the vector x of Eq. (2) and (5), in the order of Listing 1.
@@ -59,9 +60,8 @@ class RationalPs(Form):
 
     def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Evaluate P̃_s at one material and one direction of light."""
-        cos_un = jnp.cos(theta_u)
-        cos_ut = jnp.sin(theta_u) * jnp.cos(phi) * jnp.sin(theta_f) + cos_un * jnp.cos(theta_f)
-        return self.material(alpha, theta_f) @ direction_basis(cos_un, cos_ut)
+        cosines = direction_cosines(theta_f, theta_u, jnp.cos(phi))
+        return self.material(alpha, theta_f) @ direction_basis(*cosines)
 
     @classmethod
     def coefficient_names(cls) -> list:

@@ -22,6 +22,7 @@ from shadefit.render_functions import functions, table_sets
 from shading import (
     ambient_attenuation,
     ambient_layer,
+    direction_cosines,
     escape,
     harmonics,
     irradiance,
@@ -146,9 +147,8 @@ def _model(name: str, at: np.ndarray, harmonic: np.ndarray) -> dict[str, np.ndar
     received = irradiance(harmonic, _NORMAL)
 
     def one(alpha, theta_f, density, theta_v, phi):
-        cos_v, cos_nt = jnp.cos(theta_v), jnp.cos(theta_f)
-        cos_vt = jnp.sin(theta_v) * jnp.cos(phi) * jnp.sin(theta_f) + cos_v * cos_nt
-        down = chosen.ps(cos_v, cos_vt, cos_nt, alpha, theta_f)
+        cos_v, cos_vt = direction_cosines(theta_f, theta_v, jnp.cos(phi))
+        down = chosen.ps(cos_v, cos_vt, jnp.cos(theta_f), alpha, theta_f)
         layer = ambient_layer(mean, 1.0, chosen.g(density, cos_v), down)
         return layer, (cos_v, density, chosen.q(density))
 

@@ -10,6 +10,7 @@ from shading.ambient import ambient_radiance as ambient_radiance
 from shading.deferred import deferred_radiance as deferred_radiance
 from shading.deferred import wrapped_cosine as wrapped_cosine
 from shading.directions import direction as direction
+from shading.directions import direction_cosines as direction_cosines
 from shading.directions import fiber_direction as fiber_direction
 from shading.directions import sin2_between as sin2_between
 from shading.fuzz import asymmetry_from_spread as asymmetry_from_spread

@@ -1,4 +1,4 @@
-"""Unit vectors from angles, in the frame whose z axis is the surface normal n."""
+"""Unit vectors and their cosines from angles, in the frame whose z axis is the surface normal n."""
 
 import jax.numpy as jnp
 from jax import Array
@@ -18,6 +18,16 @@ def direction(theta: Scalar, phi: Scalar) -> Array:
 def fiber_direction(theta_f: Scalar) -> Array:
     """Give the fibre direction t = (sin θf, 0, cos θf); θf = 0 is a fibre along the normal."""
     return direction(theta_f, 0.0)
+
+
+def direction_cosines(theta_f: Scalar, theta: Scalar, cos_phi: Scalar) -> tuple[Array, Array]:
+    """Give u·n and u·t of `direction(theta, phi)` and the fibre of polar angle `theta_f`.
+
+    Both angles are in radians; `cos_phi` is the cosine of the azimuth between u and t.
+    """
+    cos_un = jnp.cos(theta)
+    in_plane = jnp.sin(theta) * cos_phi * jnp.sin(theta_f)
+    return cos_un, in_plane + cos_un * jnp.cos(theta_f)
 
 
 def sin2_between(theta_a: Scalar, theta_b: Scalar, phi: Scalar) -> Array:

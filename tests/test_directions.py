@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import mpmath as mp
 import numpy as np
 
-from shading import direction, fiber_direction, sin2_between
+from shading import direction, direction_cosines, fiber_direction, sin2_between
 from tests.problems import RIGHT
 
 # Vectors of three roundings each, of sines and cosines.
@@ -20,6 +20,14 @@ def test_directions_are_unit_vectors_in_the_frame_of_the_fibre():
     np.testing.assert_allclose(np.arctan2(vectors[:, 1], vectors[:, 0]), phi, atol=1e-14)
     np.testing.assert_allclose(fiber_direction(0.0), [0, 0, 1], atol=UNIT)
     np.testing.assert_allclose(fiber_direction(RIGHT), [1, 0, 0], atol=UNIT)
+
+
+def test_cosines_are_those_of_the_vectors():
+    theta_f, theta, phi = np.random.default_rng(2).uniform(0, np.pi, (3, 100))
+    cosines = jax.vmap(direction_cosines)(theta_f, theta, np.cos(phi))
+    u, t = jax.vmap(direction)(theta, phi), jax.vmap(fiber_direction)(theta_f)
+    expected = [u[:, 2], jnp.sum(u * t, axis=1)]
+    np.testing.assert_allclose(jnp.stack(cosines), jnp.stack(expected), atol=UNIT)
 
 
 def test_the_sine_between_directions_keeps_its_relative_precision():

@@ -10,6 +10,7 @@ from jax import Array
 
 from fitting.form import Form
 from integrals import PS, Axis
+from shading import direction_cosines
 from shading.types import Scalar
 
 COS_PHI = Axis("cos_phi", "cos φ", "1", -1.0, 1.0, "cosine of the light's azimuth")
@@ -43,7 +44,7 @@ class MaterialForm(Form):
 
     def __call__(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Evaluate P̃_s at one material and one direction of light."""
-        cosines = _cosines(theta_f, theta_u, jnp.cos(phi))
+        cosines = direction_cosines(theta_f, theta_u, jnp.cos(phi))
         return self.along(self.material(alpha, theta_f), *cosines)
 
     def unguarded_along(self, m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
@@ -65,21 +66,15 @@ class MaterialForm(Form):
         """Give the margins of all directions, by the cosine of the azimuth."""
 
         def margins(alpha, theta_f, theta_u, cos_phi):
-            cosines = _cosines(theta_f, theta_u, cos_phi)
+            cosines = direction_cosines(theta_f, theta_u, cos_phi)
             return self.margins_along(self.material(alpha, theta_f), jnp.cos(theta_f), *cosines)
 
         return margins, (*self.axes[:3], COS_PHI)
 
     def positive(self, alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
         """Give the radicand or denominator that a fit could make negative."""
-        cosines = _cosines(theta_f, theta_u, jnp.cos(phi))
+        cosines = direction_cosines(theta_f, theta_u, jnp.cos(phi))
         return self.positive_along(self.material(alpha, theta_f), *cosines)
-
-
-def _cosines(theta_f: Scalar, theta_u: Scalar, cos_phi: Scalar) -> tuple[Array, Array]:
-    cos_un = jnp.cos(theta_u)
-    in_plane = jnp.sin(theta_u) * cos_phi * jnp.sin(theta_f)
-    return cos_un, in_plane + cos_un * jnp.cos(theta_f)
 
 
 def surface_values(coefficients, count: int, degree: int, alpha, y) -> list[Array]:
