@@ -91,7 +91,7 @@ class Problem:
         """Choose 2^exponent points and the corners; raises ValueError for an unknown precision."""
         if precision not in PRECISIONS:
             raise ValueError(f"precision is {precision!r}; allowed: {', '.join(PRECISIONS)}")
-        self.shader, self.precision = shader, precision
+        self.shader, self.precision, self.exponent = shader, precision, exponent
         self.points = np.concatenate(
             [corners(shader.axes), off_grid_points(shader.axes, exponent, SEED)]
         )
@@ -124,18 +124,14 @@ class Problem:
         """The difference from the float64 form that code of this precision may have."""
         # In double, the form itself is rounded: there its error is float's, in double's units.
         double = self.precision == "double"
-        dtype = np.float32 if double else PRECISIONS[self.precision]
-        scale = np.finfo(PRECISIONS[self.precision]).eps / np.finfo(dtype).eps
-        rounding = difference(self.emulated(dtype), self.form)
-        if double:
-            # The inputs are doubles here; what float made of them is no error of the operations.
-            single = Problem(self.shader, "float", EXPONENT)
-            rounding = difference(single.emulated(np.float32), single.form)
-        least = LEAST_UNITS * float(np.finfo(PRECISIONS[self.precision]).eps)
-        size = float(np.max(np.abs(self.form)))
+        judge = Problem(self.shader, "float", self.exponent) if double else self
+        dtype, own = PRECISIONS[judge.precision], np.finfo(PRECISIONS[self.precision]).eps
+        rounding = difference(judge.emulated(dtype), judge.form)
+        slack = SLACK * float(own / np.finfo(dtype).eps)
+        least = LEAST_UNITS * float(own) * float(np.max(np.abs(self.form)))
         return Difference(
-            max(SLACK * float(scale) * rounding.largest, least * size),
-            max(SLACK * float(scale) * rounding.rms, least * size),
+            max(slack * rounding.largest, least),
+            max(slack * rounding.rms, least),
             int(SLACK * rounding.not_finite),
         )
 
@@ -197,14 +193,12 @@ def precision_of(language: str, wanted: str | None) -> str:
     return wanted
 
 
-def run_code(problem: Problem, language: str) -> np.ndarray:
-    """Print, compile and run the code of one language at the points: values (n,).
+def run_code(problem: Problem, language: str, source: str) -> np.ndarray:
+    """Compile and run the problem's code, printed in one language, at the points: values (n,).
 
-    Raises ValueError for code that cannot be written, ToolchainError for code that is refused or
-    does not run.
+    Raises ToolchainError for code that is refused or does not run.
     """
     chain, precision = toolchain(language), problem.precision
-    source = write(problem.shader.functions, language, precision)
     return problem.values(lambda function, rows: chain.run(source, function, rows, precision))
 
 
@@ -223,11 +217,11 @@ def check(problem: Problem, language: str) -> Check:
     if reason is not None:
         return Check(language, precision, "not checked", reason)
     try:
-        write(problem.shader.functions, language, precision)
+        source = write(problem.shader.functions, language, precision)
     except ValueError as error:
         return Check(language, precision, "not checked", str(error))
     try:
-        values = run_code(problem, language)
+        values = run_code(problem, language, source)
     except ToolchainError as error:
         return Check(language, precision, "failed", str(error), chain.tool, chain.note)
     apart = difference(values, problem.form)

@@ -73,7 +73,7 @@ def code(
     kind = precision_of(language, precision)
     chosen = shader(name, kind, function_name)
     # Before anything is measured: what cannot be written is refused at once.
-    write(chosen.functions, language, kind, constants=constants)
+    bare = write(chosen.functions, language, kind, constants=constants)
     command = ["shadefit", "export", name, "--to", language]
     if precision is not None:
         command += ["--precision", precision]
@@ -81,7 +81,7 @@ def code(
         command += ["--name", function_name]
     if constants != "inline":
         command += ["--constants", constants]
-    head = _header(chosen, name, language, kind, shlex.join(command))
+    head = _header(chosen, name, language, kind, bare, shlex.join(command))
     return write(chosen.functions, language, kind, constants=constants, header=head)
 
 
@@ -98,10 +98,10 @@ def costs(functions: tuple[Function, ...]) -> dict[str, Cost]:
 
 
 def _header(
-    chosen: Shader, name: str, language: str, precision: str, command: str
+    chosen: Shader, name: str, language: str, precision: str, source: str, command: str
 ) -> dict[str, str]:
     problem = Problem(chosen, precision)
-    measured, how = _measured(problem, language)
+    measured, how = _measured(problem, language, source)
     domain = ", ".join(
         f"{axis.symbol} in {axis.domain}{'' if axis.unit == '1' else ' ' + axis.unit}"
         for axis in chosen.axes
@@ -145,10 +145,10 @@ def _header(
     return head
 
 
-def _measured(problem: Problem, language: str) -> tuple[Difference, str]:
+def _measured(problem: Problem, language: str, source: str) -> tuple[Difference, str]:
     reason = toolchain(language).missing(problem.precision)
     if reason is None:
-        values = run_code(problem, language)
+        values = run_code(problem, language, source)
         how = f"this code run in {target(language).name}"
     else:
         values = problem.emulated(PRECISIONS[problem.precision])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from coefficients import verify
+from coefficients.printer import write
 from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
 from coefficients.targets import PRECISIONS, TARGETS
 from coefficients.toolchains import ToolchainError
@@ -75,7 +76,7 @@ def test_the_closed_form_in_float_is_exact_to_3e_minus_6_everywhere():
         pytest.skip("gcc is not here")
     hard = Problem(shader(EXACT_PS), "float", 4)
     hard.points = np.concatenate([corners(hard.shader.axes), hard_points()])
-    values = verify.run_code(hard, "c")
+    values = verify.run_code(hard, "c", write(hard.shader.functions, "c"))
     assert np.isfinite(values).all()
     assert np.abs(values - hard.integral).max() <= EXACT_ERROR
     assert values.min() >= -EXACT_ERROR and values.max() <= 1 + EXACT_ERROR
@@ -88,7 +89,7 @@ def test_the_closed_form_is_a_number_for_every_alpha():
     points = hard_points()
     points[:, 0] = np.geomspace(1e-30, 1, len(points))
     tiny.points = points
-    values = verify.run_code(tiny, "c")
+    values = verify.run_code(tiny, "c", write(tiny.shader.functions, "c"))
     # Below α ~ 1e-3 the cosines, rounded to float, are no longer those of a direction, and P_s may
     # leave [0, 1] with them, in float64 too. What the code adds to that is small.
     assert np.isfinite(values).all()
