@@ -99,8 +99,12 @@ def _compile(
     try:
         execute(command, failure=refusal("C", function, "float"))
     except ToolchainError as error:
-        raise ValueError(str(error)) from error
-    run = ctypes.CDLL(str(library)).evaluate_all
+        complaint = next((line for line in error.log.splitlines() if "error" in line), "")
+        raise ValueError(f"{error.summary} {complaint}".strip()) from error
+    try:
+        run = ctypes.CDLL(str(library)).evaluate_all
+    except OSError as error:
+        raise ValueError(f"what gcc made is no library: {error}") from error
     pointer = np.ctypeslib.ndpointer(np.float32, ndim=2, flags="C_CONTIGUOUS")
     run.argtypes, run.restype = [ctypes.c_long, pointer, pointer], None
     height = result_count(function)

@@ -14,6 +14,7 @@ from coefficients.proven import proofs
 from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
 from coefficients.table import serialise
 from coefficients.targets import PRECISIONS, target
+from coefficients.toolchains import ToolchainError
 from coefficients.toolchains.registry import toolchain
 from coefficients.verify import Difference, Problem, precision_of, run_code, text_of
 from fitting import off_grid_errors
@@ -146,14 +147,16 @@ def _header(
 
 
 def _measured(problem: Problem, language: str, source: str) -> tuple[Difference, str]:
-    reason = toolchain(language).missing(problem.precision)
-    if reason is None:
-        values = run_code(problem, language, source)
-        how = f"this code run in {target(language).name}"
-    else:
-        values = problem.emulated(PRECISIONS[problem.precision])
-        how = f"emulated, every operation rounded: {target(language).name} was not run"
-    return problem.against_integral(values), how
+    name = target(language).name
+    reason = f"{name} was not run"
+    if toolchain(language).missing(problem.precision) is None:
+        try:
+            values = run_code(problem, language, source)
+            return problem.against_integral(values), f"this code run in {name}"
+        except ToolchainError as error:
+            reason = error.summary
+    values = problem.emulated(PRECISIONS[problem.precision])
+    return problem.against_integral(values), f"emulated, every operation rounded: {reason}"
 
 
 def _verdict(problem: Problem, own: Difference | None, measured: Difference) -> str:

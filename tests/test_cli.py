@@ -68,6 +68,19 @@ def test_evaluate_gives_every_leg_within_its_error(capsys, name):
         assert abs(table["difference"]) < 0.15
 
 
+def test_float64_is_set_whatever_the_environment_says():
+    code = (
+        "import os, sys; from shadefit.cli import main\n"
+        "try: main(['--version'])\n"
+        "finally: import jax; sys.stderr.write(str(jax.config.read('jax_enable_x64')))"
+    )
+    environment = {**os.environ, "JAX_ENABLE_X64": "0"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True
+    )
+    assert done.stderr == "True"
+
+
 def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
     arguments = ["--alpha", "0.35", "--theta-f", "1deg", "--theta-u", "30deg", "--phi", "0"]
     _, out, _ = run(capsys, "evaluate", "ps", *arguments, "--json")

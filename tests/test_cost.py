@@ -1,3 +1,4 @@
+import os
 import shutil
 
 import jax.numpy as jnp
@@ -113,6 +114,23 @@ def test_without_a_compiler_there_is_no_figure(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     with pytest.raises(ValueError, match="gcc is not on PATH"):
         throughput(SCALAR, points=500, rounds=1)
+
+
+@pytest.mark.parametrize(
+    ("script", "complaint"),
+    [
+        ("#!/bin/sh\nexit 1\n", r"does not compile \(status 1\)"),
+        ("#!/bin/sh\nexit 0\n", "is no library"),
+    ],
+)
+def test_a_compiler_that_fails_is_an_error_in_one_line(monkeypatch, tmp_path, script, complaint):
+    compiler = tmp_path / "gcc"
+    compiler.write_text(script)
+    compiler.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    with pytest.raises(ValueError, match=complaint) as caught:
+        throughput(SCALAR, points=500, rounds=1)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("bad", [{"points": 0}, {"rounds": 0}])

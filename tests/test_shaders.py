@@ -1,6 +1,7 @@
 """What is exported of each table: the paper's functions, in every language, with honest headers."""
 
 import functools
+import os
 import re
 from dataclasses import replace
 
@@ -264,6 +265,17 @@ def test_without_a_compiler_the_error_is_emulated(few_points, monkeypatch):
     assert "emulated, every operation rounded: HLSL was not run" in " ".join(
         export.code("q", "hlsl").replace("//", "").split()
     )
+
+
+def test_with_a_compiler_that_fails_the_error_is_emulated(few_points, monkeypatch, tmp_path):
+    compiler = tmp_path / "gcc"
+    compiler.write_text("#!/bin/sh\nexit 1\n")
+    compiler.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    assert (
+        "emulated, every operation rounded: "
+        "C code of FuzzAveragePenetration in float does not compile (status 1))"
+    ) in " ".join(export.code("q", "c").replace("//", "").split())
 
 
 @pytest.mark.parametrize("name", ["g", EXACT_PS])

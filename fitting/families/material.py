@@ -55,7 +55,7 @@ class MaterialForm(Form):
         """Give the form without floors, by the cosine of the azimuth."""
 
         def value(alpha, theta_f, theta_u, cos_phi):
-            cos_un, cos_ut = _cosines(theta_f, theta_u, cos_phi)
+            cos_un, cos_ut = direction_cosines(theta_f, theta_u, cos_phi)
             # It is a cosine, which an interval does not know.
             cos_ut = jnp.maximum(jnp.minimum(cos_ut, 1.0), -1.0)
             return self.unguarded_along(self.material(alpha, theta_f), cos_un, cos_ut)
