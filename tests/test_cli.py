@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from coefficients.catalogue import load, names
-from coefficients.table import parse
+from coefficients.table import parse, serialise
 from integrals import INTEGRALS
 from shadefit.cli import main
 from shadefit.options import angle
@@ -197,6 +197,15 @@ def test_angles(text, radians):
 )
 def test_bad_input_is_one_line(capsys, arguments):
     refuses(capsys, *arguments)
+
+
+@pytest.mark.parametrize("numerator", [3, 10**30, 0.5, "ab"])
+def test_a_file_whose_shape_is_none_is_refused(capsys, tmp_path, numerator):
+    data = json.loads(serialise(load("best/r-25")))
+    data["shape"]["numerator"] = numerator
+    path = tmp_path / "r.json"
+    path.write_text(json.dumps(data))
+    assert "numerator = " in refuses(capsys, "compare", str(path))
 
 
 @pytest.mark.parametrize("grid", ["1", "0", "-3", "8", "130", "x", "1e9"])

@@ -1,5 +1,6 @@
 import itertools
 import json
+import math
 
 import jax
 import jax.numpy as jnp
@@ -66,6 +67,35 @@ def test_a_shape_that_is_not_allowed_is_refused_in_one_line(family, shape, messa
     with pytest.raises(ValueError, match=message) as caught:
         form_class(family, shape)
     assert "\n" not in str(caught.value)
+
+
+SHAPES = {
+    "pole-q": {"structure": "free", "terms": 1, "poles": 1},
+    "decay-g": {"decay": "power", "rate": "constant", "factor": "linear"},
+    "tied-g": {"poles": 1, "root": 1},
+    "monomial-r": R_SHAPE,
+    "one-root-ps": {"skew": 1, "degree": 1, "least_alpha": 0.15},
+    "two-root-ps": {"terms": 3, "degree": 1, "least_alpha": 0.15},
+    "cubic-ps": {"steps": 0, "degree": 1, "least_alpha": 0.15},
+}
+# Values of no argument of any family.
+WRONG = (
+    *(None, True, -2, 10**9, 10**400, 0.0, 1e308, math.inf, math.nan, "", "x" * 2000, "\x1b[2J"),
+    *([[]], [None], ["ab"], [["a", "b"]], [[True, 0]], [[0.5, 1]], [[10**400, 1]], [[[0], [0]]]),
+    *([[1, 1], [1, 1]], [[i // 8, i % 8] for i in range(64)], [[0, 0]] * 10**3, {}, {"a": 1}),
+)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_no_argument_of_a_shape_is_what_none_may_be(family):
+    for name, value in itertools.product(SHAPES[family], WRONG):
+        with pytest.raises(ValueError, match=f"^{name} = ") as caught:
+            form_class(family, {**SHAPES[family], name: value})
+        assert str(caught.value).isprintable()
+        assert len(str(caught.value)) < 300
+    with pytest.raises(ValueError, match="shape of") as caught:
+        form_class(family, {f"{k:064}": k for k in range(10**4)})
+    assert len(str(caught.value)) < 1000
 
 
 @pytest.mark.parametrize("structure", ["one", "slope", "log"])

@@ -4,6 +4,7 @@ A form is told by its family and its `shape`, the family's arguments; both are p
 """
 
 import itertools
+import reprlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -66,7 +67,9 @@ def form_class(family: str, shape: dict[str, Any]) -> type[Form]:
         raise ValueError(f"form {family!r} is not known: allowed are {', '.join(FAMILIES)}")
     arguments = FAMILIES[family].arguments
     if set(shape) != set(arguments):
-        raise ValueError(f"shape of {family!r} has {sorted(shape)}: allowed are {list(arguments)}")
+        # What a file holds may be long: it is shown in part.
+        given = reprlib.repr(sorted(shape))
+        raise ValueError(f"shape of {family!r} has {given}: allowed are {list(arguments)}")
     checked = {name: _checked(name, shape[name], arguments[name]) for name in arguments}
     if family == "pole-q" and checked["terms"] + checked["poles"] == 0:
         raise ValueError("terms + poles = 0: at least one is needed")
@@ -77,16 +80,18 @@ def _checked(name: str, value: Any, allowed: Any) -> Any:
     if allowed == "alpha":
         if isinstance(value, float) and 0 < value < 1:
             return value
-        raise ValueError(f"{name} = {value!r}: allowed is a number between 0 and 1")
+        raise ValueError(f"{name} = {reprlib.repr(value)}: allowed is a number between 0 and 1")
     if allowed == "exponents":
         return _exponents(name, value)
     if value in allowed and type(value) is type(allowed[0]):
         return value
-    raise ValueError(f"{name} = {value!r}: allowed are {', '.join(map(str, allowed))}")
+    allowed = ", ".join(map(str, allowed))
+    raise ValueError(f"{name} = {reprlib.repr(value)}: allowed are {allowed}")
 
 
 def _exponents(name: str, value: Any) -> tuple[tuple[int, int], ...]:
-    pairs = [tuple(pair) if isinstance(pair, list | tuple) else () for pair in value]
+    given = value if isinstance(value, list | tuple) else [value]
+    pairs = [tuple(pair) if isinstance(pair, list | tuple) else () for pair in given]
     good = all(
         len(pair) == 2 and all(type(k) is int and 0 <= k <= MAX_EXPONENT for k in pair)
         for pair in pairs
@@ -99,8 +104,8 @@ def _exponents(name: str, value: Any) -> tuple[tuple[int, int], ...]:
         or (not needed and (0, 0) in pairs)
     ):
         raise ValueError(
-            f"{name}: allowed are up to {MAX_MONOMIALS} different pairs of whole numbers "
-            f"from 0 to {MAX_EXPONENT}"
+            f"{name} = {reprlib.repr(value)}: allowed are up to {MAX_MONOMIALS} different pairs "
+            f"of whole numbers from 0 to {MAX_EXPONENT}"
         )
     return tuple(pairs)
 
