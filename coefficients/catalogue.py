@@ -3,6 +3,7 @@
 import json
 import os
 import platform
+import reprlib
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -28,6 +29,8 @@ SINGLE_FORMS = {**PAPER_FORMS, ConservativeNorm.name: ConservativeNorm}
 # A published table with this behind its name is taken as printed, its errata left in.
 AS_PRINTED = "@printed"
 _STEMS = {*(f"refit/{q}" for q in QUANTITIES), *(f"published/{q}" for q in PUBLISHED)}
+# A domain that has been through float32, or was written with seven digits, is the same.
+ROUNDING = 1e-6
 _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
 
 
@@ -103,8 +106,8 @@ def corrected(table: Table) -> Table:
 def form_of(table: Table) -> Form:
     """Give the form that a table holds the coefficients of.
 
-    Its axes are the form's, not the table's `arguments`. Raises ValueError for a form that is not
-    known, one of another quantity, and coefficients that are not in its shape.
+    Raises ValueError for a form that is not known, one of another quantity, coefficients that are
+    not in its shape, and arguments and names of coefficients that are not the form's.
     """
     if table.shape is None and table.form in SINGLE_FORMS:
         form = SINGLE_FORMS[table.form]
@@ -124,7 +127,35 @@ def form_of(table: Table) -> Form:
             f"{table.name} has coefficients of shape {coefficients.shape}, "
             f"form {table.form!r} takes {expected}"
         )
+    _require_agreement(table, form)
     return form(jnp.asarray(coefficients))
+
+
+def _require_agreement(table: Table, form: type[Form]) -> None:
+    """Raise ValueError where a table says of its form what the form does not."""
+    given = {each.name: (each.unit, each.domain) for each in table.arguments}
+    wanted = {axis.name: (axis.unit, [axis.lower, axis.upper]) for axis in form.axes}
+    if [each.name for each in table.arguments] != list(wanted):
+        raise _contradiction(table, "arguments", list(given), list(wanted))
+    for name, (unit, domain) in wanted.items():
+        its_unit, its_domain = given[name]
+        if its_unit != unit:
+            raise _contradiction(table, f"the unit of {name}", its_unit, unit)
+        if not np.allclose(its_domain, domain, ROUNDING, ROUNDING):
+            raise _contradiction(table, f"the domain of {name}", its_domain, domain)
+    names = np.ravel(np.array(table.coefficient_names, dtype=object))
+    expected = np.ravel(np.array(form.coefficient_names(), dtype=object))
+    for index, (its_name, name) in enumerate(zip(names, expected, strict=True)):
+        if its_name != name:
+            raise _contradiction(table, f"the name of coefficient {index}", its_name, name)
+
+
+def _contradiction(table: Table, what: str, given: Any, wanted: Any) -> ValueError:
+    # What a file holds may be long: it is shown in part.
+    return ValueError(
+        f"{table.name} gives {what} as {reprlib.repr(given)}, "
+        f"form {table.form!r} has {reprlib.repr(wanted)}"
+    )
 
 
 def from_fit(fit: Fit, command: str, name: str | None = None) -> Table:

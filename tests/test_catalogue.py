@@ -163,6 +163,50 @@ def test_a_table_that_is_no_table_of_its_form_is_refused(name):
         form_of(parse(json.dumps(data), "itself"))
 
 
+G_ARGUMENTS = json.loads(serialise(load("published/g")))["arguments"]
+G_NAMES = RationalG.coefficient_names()
+CONTRADICTIONS = {
+    "a unit": (
+        {"arguments": [{**G_ARGUMENTS[0], "unit": "rad"}, G_ARGUMENTS[1]]},
+        "the unit of density as 'rad', form 'rational-g' has '1'",
+    ),
+    "a domain": (
+        {"arguments": [{**G_ARGUMENTS[0], "domain": [0, 50]}, G_ARGUMENTS[1]]},
+        r"the domain of density as \[0.0, 50.0\], form 'rational-g' has \[0.001, 0.5\]",
+    ),
+    "arguments the other way round": (
+        {"arguments": G_ARGUMENTS[::-1]},
+        r"arguments as \['cos_v', 'density'\], form 'rational-g' has \['density', 'cos_v'\]",
+    ),
+    "an argument twice": ({"arguments": [*G_ARGUMENTS, G_ARGUMENTS[1]]}, "g gives arguments as"),
+    "one argument": ({"arguments": G_ARGUMENTS[:1]}, r"arguments as \['density'\]"),
+    "names the other way round": (
+        {"coefficient_names": G_NAMES[::-1]},
+        "the name of coefficient 0 as 'c3: ν³', form 'rational-g' has 'c0: dν'",
+    ),
+    "a long name": (
+        {"coefficient_names": [*G_NAMES[:3], "c" * 2000]},
+        r"the name of coefficient 3 as 'c+\.\.\.c+', form",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CONTRADICTIONS)
+def test_a_table_that_contradicts_its_form_is_refused(name):
+    change, message = CONTRADICTIONS[name]
+    data = {**json.loads(serialise(load("published/g"))), **change}
+    with pytest.raises(ValueError, match=message) as error:
+        form_of(parse(json.dumps(data), "itself"))
+    assert str(error.value).isprintable()
+
+
+def test_a_domain_is_the_same_after_rounding():
+    data = json.loads(serialise(load("published/r")))
+    data["arguments"][0]["domain"][0] = float(np.float32(0.15))
+    data["arguments"][1]["domain"][1] = 1.570796
+    form_of(parse(json.dumps(data), "itself"))
+
+
 def fit_of(form, bound: float = 0.5) -> Fit:
     """Give a fit with made-up results, to be written down."""
     grid = gauss_grid(type(form).axes, 9)
