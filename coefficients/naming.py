@@ -17,7 +17,7 @@ _SIGNS = str.maketrans(
 
 
 def ascii_text(text: str) -> str:
-    """Write text in ASCII: not every shader compiler reads anything else, even in comments."""
+    """Write text in printable ASCII: not every shader compiler reads more, even in comments."""
     plain = text.translate(_SIGNS)
     # θf is theta_f, not thetaf.
     plain = re.sub(r"([\u0370-\u03ff])(?=[A-Za-z])", r"\1_", plain)
@@ -25,6 +25,8 @@ def ascii_text(text: str) -> str:
 
 
 def _ascii(character: str) -> str:
+    if not character.isprintable():
+        return " " if character.isspace() else ""
     if character.isascii():
         return character
     _, greek, letter = unicodedata.name(character, "").partition("GREEK SMALL LETTER ")

@@ -15,15 +15,22 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
 # What is proven to lie in [0, 1] does so but for the rounding of the proof.
 Fraction = Annotated[Number, Field(ge=-1e-11, le=1 + 1e-11)]
-Text = Annotated[str, Field(max_length=2000)]
+# Text is shown on terminals and in comments of code: no control codes, no line breaks, and none of
+# the characters that have no width or turn the direction of writing.
+UNSEEN = r"\x00-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff"
+Text = Annotated[str, Field(max_length=2000, pattern=f"^[^{UNSEEN}]*$")]
 Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$")]
+# A key that is no name (or text) is one too many.
+_CLOSED = Field(json_schema_extra={"additionalProperties": False})
 Vector = Annotated[list[Number], Field(max_length=4096)]
 Row = Annotated[list[Number], Field(min_length=1, max_length=4096)]
 Labels = Annotated[list[Text], Field(max_length=4096)]
 LabelRow = Annotated[list[Text], Field(min_length=1, max_length=4096)]
 Pair = Annotated[list[int], Field(min_length=2, max_length=2)]
 # What tells the members of a family of forms apart: checked by fitting/families.
-Shape = dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]]
+Shape = Annotated[
+    dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]], _CLOSED
+]
 
 
 class _Part(BaseModel):
@@ -85,7 +92,7 @@ class ErrorRecord(_Part):
 
     rms: Annotated[Number, Field(ge=0)]
     max: Annotated[Number, Field(ge=0)]
-    where: dict[str, Number]
+    where: Annotated[dict[Text, Number], _CLOSED]
     points: Annotated[int, Field(ge=1)]
 
 
@@ -122,7 +129,7 @@ class Provenance(_Part):
     """What made the table: the command, the versions of what it ran on, and the solver."""
 
     command: Text
-    versions: dict[str, Text]
+    versions: Annotated[dict[Text, Text], _CLOSED]
     solver: Text
 
 
@@ -143,7 +150,7 @@ class Publication(_Part):
     source: Text
     appendix: Text
     listing: Text
-    clamps: dict[str, list[Number | None]]
+    clamps: Annotated[dict[Text, list[Number | None]], _CLOSED]
     errata: list[Erratum]
 
 

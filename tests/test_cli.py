@@ -208,6 +208,13 @@ def test_a_file_whose_shape_is_none_is_refused(capsys, tmp_path, numerator):
     assert "numerator = " in refuses(capsys, "compare", str(path))
 
 
+@pytest.mark.parametrize("command", [["compare"], ["export", "--to", "c"], ["export"], ["cost"]])
+def test_a_file_that_would_steer_the_terminal_is_refused(capsys, tmp_path, command):
+    path = tmp_path / "q.json"
+    path.write_text(json.dumps({**json.loads(serialise(load("q"))), "equation": "\x1b]0;owned\a"}))
+    assert refuses(capsys, *command, str(path)).strip("\n").isprintable()
+
+
 @pytest.mark.parametrize("grid", ["1", "0", "-3", "8", "130", "x", "1e9"])
 def test_a_grid_that_cannot_be_fitted_is_refused(capsys, tmp_path, grid):
     refuses(capsys, "refit", "all", "--grid", grid, "--out", str(tmp_path / "out"))

@@ -439,10 +439,14 @@ def test_functions_share_a_file_but_not_a_name():
 @pytest.mark.parametrize("key", TARGETS)
 def test_no_header_leaves_its_comment(key):
     precision = next(iter(TARGETS[key].types))
-    text = "first line\nsecond line */ \\ \u2028 θf ∈ [0, π/2] ½ " + "long " * 40 + "\\"
+    text = (
+        "first line\nsecond line */ \\ \u2028 \x1b\x9b\b\u202eθf ∈ [0, π/2] ½ "
+        + "long " * 40
+        + "\\"
+    )
     source = write(QUADRATIC, key, precision, header={"Label\n": text})
     comment = [line for line in source.splitlines() if line.startswith(TARGETS[key].comment)]
-    assert source.isascii()
+    assert source.isascii() and source.replace("\n", "").isprintable()
     assert "theta_f in [0, pi/2] 1/2" in source
     assert "\\" not in source
     assert (
