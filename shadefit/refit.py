@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.catalogue import QUANTITIES, form_of, from_fit, load, names_of_best
+from coefficients.catalogue import FOLDER, QUANTITIES, form_of, from_fit, load, names_of_best
 from coefficients.files import require_writable, write_whole
 from coefficients.table import Table, serialise
 from fitting import Fit, Goal, Weight, improve, refit
@@ -14,7 +14,6 @@ from fitting.goal import LEAST_SQUARES
 from shadefit.terminal import print_json, print_table, stages
 
 ALL = "all"
-REFITS, BEST = Path("coefficients/refit"), Path("coefficients/best")
 # Compilation holds one core at a time: a second fit fills the other.
 WORKERS = 2
 
@@ -29,14 +28,15 @@ def run(
 ) -> None:
     """Refit, and write `out`/NAME.json for each; nothing is written unless every fit holds.
 
-    `given` holds the fields of a Goal that differ from the table's own.
+    `out` None: tables replace those that their names load. `given` holds the fields of a Goal that
+    differ from the table's own.
     """
     chosen = selection(names)
     if given and "velvet" in chosen:
         if "velvet" in names:
             raise ValueError(f"velvet has a goal of its own:{_options(given)} is for the others")
         chosen.remove("velvet")
-    folders = [out or (BEST if name.startswith("best/") else REFITS) for name in chosen]
+    folders = [out or _own_folder(name) for name in chosen]
     for folder in set(folders):
         require_writable(folder)
     with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
@@ -65,6 +65,13 @@ def run(
             [_row(table, file) for table, file in zip(tables, files, strict=True)],
             "Errors are measured off the grid, against exact values.",
         )
+
+
+def _own_folder(name: str) -> Path:
+    """Give the folder that `load` takes a table from, by a short path where there is one."""
+    folder = FOLDER / ("best" if name.startswith("best/") else "refit")
+    here = Path.cwd()
+    return folder.relative_to(here) if folder.is_relative_to(here) else folder
 
 
 def _table(name: str, grid: int, weight: Weight, given: dict, tell: Callable[[str], None]) -> Table:

@@ -12,9 +12,10 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from coefficients.catalogue import load, names
+from coefficients.catalogue import FOLDER, load, names
 from coefficients.table import parse, serialise
 from integrals import INTEGRALS
+from shadefit import refit
 from shadefit.cli import main
 from shadefit.options import angle
 
@@ -108,6 +109,25 @@ def test_refit_writes_valid_tables_and_the_same_bytes_twice(capsys, tmp_path):
         assert first == second
         assert parse(first.decode(), name).name == name
     assert sorted(path.name for path in (tmp_path / "a").iterdir()) == ["g.json", "q.json"]
+
+
+def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
+    capsys, tmp_path, monkeypatch
+):
+    written = []
+    monkeypatch.setattr(refit, "_table", lambda name, *_: load(name))
+    monkeypatch.setattr(refit, "write_whole", lambda path, _: written.append(path.absolute()))
+    own = [FOLDER / "refit" / "q.json", FOLDER / "best" / "q-4.json"]
+    for folder, said in (
+        (tmp_path, own),
+        (FOLDER.parent, [x.relative_to(FOLDER.parent) for x in own]),
+    ):
+        monkeypatch.chdir(folder)
+        status, out, _ = run(capsys, "refit", "q", "best/q-4", "--json")
+        assert status == 0
+        assert [table["file"] for table in json.loads(out)["tables"]] == list(map(str, said))
+    assert written == own * 2
+    assert not list(tmp_path.iterdir())
 
 
 def test_compare_measures_each_table_against_the_exact_integral(capsys):

@@ -43,7 +43,7 @@ def _refit(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for NAME.json; by default coefficients/refit or …/best."),
+        typer.Option(help="Folder for NAME.json; by default the table is replaced."),
     ] = None,
     grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129, for the paper's forms.")] = 65,
     weight: Annotated[
