@@ -6,7 +6,16 @@ import numpy as np
 
 from coefficients.catalogue import form_of
 from coefficients.table import Table
-from fitting import Errors, Form, form_values, judge, measure, off_grid_reference
+from fitting import (
+    Domain,
+    Errors,
+    Form,
+    common_domain,
+    form_values,
+    judge,
+    measure,
+    off_grid_reference,
+)
 
 
 @dataclass(frozen=True)
@@ -29,6 +38,7 @@ class Comparison:
     """
 
     quantity: str
+    domain: Domain
     entries: tuple[Entry, ...]
     difference: float
     where: dict[str, float]
@@ -37,28 +47,31 @@ class Comparison:
 def compare(labelled: list[tuple[str, Table]]) -> Comparison:
     """Compare tables of one quantity; the first is what the others are measured by.
 
-    The points are the off-grid set of the first table's form: 2¹² for R, 2¹⁶ or more for the
-    others. Raises ValueError when the quantities differ.
+    The points are the off-grid set of the domain that all have in common: 2¹² for R, 2¹⁶ or more
+    for the others. Raises ValueError when the quantities differ, or no part of their domains is
+    common.
     """
     quantities = {table.quantity for _, table in labelled}
     if len(quantities) != 1:
         raise ValueError(f"tables of different quantities: {', '.join(sorted(quantities))}")
     forms: list[Form] = [form_of(table) for _, table in labelled]
-    points, _ = off_grid_reference(type(forms[0]))
+    domain = common_domain([type(form) for form in forms])
+    points, _ = off_grid_reference(domain)
     values = [form_values(form, points) for form in forms]
-    errors = [judge(form, type(forms[0])) for form in forms]
+    errors = [judge(form, domain) for form in forms]
     entries = tuple(
         Entry(label, table, e, e.rms / errors[0].rms, e.largest / errors[0].largest)
         for (label, table), e in zip(labelled, errors, strict=True)
     )
-    apart = measure(values[-1] - values[0], points, type(forms[0]))
-    return Comparison(quantities.pop(), entries, apart.largest, apart.where)
+    apart = measure(values[-1] - values[0], points, domain)
+    return Comparison(quantities.pop(), domain, entries, apart.largest, apart.where)
 
 
 def as_json(comparison: Comparison) -> dict:
     """Give a comparison as plain JSON values, coefficients included."""
     return {
         "quantity": comparison.quantity,
+        "domain": {axis.name: [axis.lower, axis.upper] for axis in comparison.domain.axes},
         "points": comparison.entries[0].errors.points,
         "tables": [
             {

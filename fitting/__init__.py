@@ -6,6 +6,8 @@ is the result with its errors and the proof that it has no pole in its domain.
 
 from fitting.certificate import Certificate as Certificate
 from fitting.certificate import certify_denominators as certify_denominators
+from fitting.domain import Domain as Domain
+from fitting.domain import common_domain as common_domain
 from fitting.errors import Errors as Errors
 from fitting.errors import exact_values as exact_values
 from fitting.errors import form_values as form_values

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from fitting.domain import Domain
 from fitting.form import Form
 from fitting.grid import off_grid_points
 from fitting.spread import COUNTS, spread_points
@@ -52,10 +53,12 @@ def form_values(form: Form, points: np.ndarray) -> np.ndarray:
     return np.asarray(in_chunks(functools.partial(_apply, form), points, CHUNK))
 
 
-def measure(difference: np.ndarray, points: np.ndarray, form: type[Form], weights=None) -> Errors:
+def measure(
+    difference: np.ndarray, points: np.ndarray, domain: type[Form] | Domain, weights=None
+) -> Errors:
     """Sum up the differences (n,) between a form and its integral at points (n, axes)."""
     worst = int(np.argmax(np.abs(difference)))
-    where = {axis.name: float(x) for axis, x in zip(form.axes, points[worst], strict=True)}
+    where = {axis.name: float(x) for axis, x in zip(domain.axes, points[worst], strict=True)}
     rms = float(np.sqrt(np.average(difference**2, weights=weights)))
     return Errors(rms, float(np.abs(difference[worst])), where, len(points))
 
@@ -65,8 +68,8 @@ def off_grid_errors(form: Form) -> Errors:
     return judge(form, type(form))
 
 
-def judge(form: Form, domain: type[Form]) -> Errors:
-    """Measure a form on the domain of another (or its own).
+def judge(form: Form, domain: type[Form] | Domain) -> Errors:
+    """Measure a form on a domain: its own, another form's, or what they have in common.
 
     The rms error is over scrambled Sobol' points. The largest is over these, over points on faces,
     edges and corners of the domain and where the integral is steep, and uphill from the worst.
@@ -116,11 +119,15 @@ def climb(size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], s
     return best
 
 
-@functools.lru_cache(maxsize=16)
-def off_grid_reference(form: type[Form]) -> tuple[np.ndarray, np.ndarray]:
+def off_grid_reference(domain: type[Form] | Domain) -> tuple[np.ndarray, np.ndarray]:
     """Give the off-grid points (n, axes) of a form's domain and the exact values (n,) there."""
-    points = off_grid_points(form.axes, COUNTS[form.integral.name].judged, OFF_GRID_SEED)
-    return points, exact_values(form.integral, points)
+    return _off_grid(domain.integral.name, domain.axes)
+
+
+@functools.lru_cache(maxsize=16)
+def _off_grid(name: str, axes: tuple[Axis, ...]) -> tuple[np.ndarray, np.ndarray]:
+    points = off_grid_points(axes, COUNTS[name].judged, OFF_GRID_SEED)
+    return points, exact_values(INTEGRALS[name], points)
 
 
 def in_chunks(function, points: np.ndarray, chunk: int):
@@ -131,12 +138,15 @@ def in_chunks(function, points: np.ndarray, chunk: int):
     return jax.tree.map(lambda *each: jnp.asarray(np.concatenate(each)[:count]), *parts)
 
 
-@functools.lru_cache(maxsize=16)
-def check_reference(form: type[Form], seed: int) -> tuple[np.ndarray, np.ndarray]:
+def check_reference(domain: type[Form] | Domain, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Give points (n, axes) all over a form's domain, its boundary included, and exact values."""
-    name = form.integral.name
-    points = spread_points(name, form.axes, COUNTS[name].checked, seed)
-    return points, exact_values(form.integral, points)
+    return _check(domain.integral.name, domain.axes, seed)
+
+
+@functools.lru_cache(maxsize=16)
+def _check(name: str, axes: tuple[Axis, ...], seed: int) -> tuple[np.ndarray, np.ndarray]:
+    points = spread_points(name, axes, COUNTS[name].checked, seed)
+    return points, exact_values(INTEGRALS[name], points)
 
 
 @functools.partial(jax.jit, static_argnums=0, static_argnames="nodes")

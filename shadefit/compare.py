@@ -34,6 +34,7 @@ def _contestants(table: Table, name: str) -> list[tuple[str, Table]]:
 
 def _print(comparison: Comparison) -> None:
     first = comparison.entries[0]
+    domain = ", ".join(f"{axis.name} in {axis.domain}" for axis in comparison.domain.axes)
     print_table(
         f"{comparison.quantity}: {first.table.equation}, "
         f"{first.errors.points:,} points off the grid",
@@ -49,8 +50,8 @@ def _print(comparison: Comparison) -> None:
             ]
             for entry in comparison.entries
         ],
-        f"The last differs from the first by at most {comparison.difference:.3e}, "
-        f"at {place(comparison.where)}.",
+        f"Measured for {domain}. The last differs from the first by at most "
+        f"{comparison.difference:.3e}, at {place(comparison.where)}.",
     )
     rows = coefficient_rows(comparison) if _same_form(comparison) else []
     if 0 < len(rows) <= PRINTED_COEFFICIENTS:

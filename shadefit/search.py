@@ -12,12 +12,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from coefficients.catalogue import PUBLISHED, form_of, from_fit, load, names_of_best
-from coefficients.compare import compare
 from coefficients.cost import count
 from coefficients.files import require_writable, write_whole, write_whole_bytes
 from coefficients.shaders import functions_of
 from coefficients.table import SCHEMA, Table, read, serialise
-from fitting import Form, Goal, improve
+from fitting import Form, Goal, common_domain, improve, judge
 from fitting.families import candidates
 from fitting.grow import grown_r
 from integrals import R
@@ -59,7 +58,7 @@ def run(
     if not 0.01 <= least_alpha < 1:
         raise ValueError(f"least-alpha = {least_alpha}: allowed are 0.01 to below 1")
     require_writable(out)
-    found, refused = [], 0
+    found, refused, candidate = [], 0, None
     with stages() as progress:
         task = progress.add_task(quantity, total=None)
         for form in _candidates(quantity, least_alpha):
@@ -78,11 +77,12 @@ def run(
                 refused += 1
                 continue
             found.append(_found(table, out))
-    if not found:
+            candidate = form
+    if candidate is None:
         raise ValueError(f"no form of {quantity} was found within {budget} operations")
     best = best_so_far(found)
     good = [each for each in best if max_error is None or each.largest <= max_error]
-    published = _published(quantity)
+    published = _published(quantity, candidate)
     drawn = out / f"{quantity}-frontier"
     exact = _exact(quantity)
     for extension, data in draw(quantity, found, best, published, exact).items():
@@ -191,10 +191,12 @@ def _found(table: Table, out: Path) -> Found:
     )
 
 
-def _published(quantity: str) -> Found:
+def _published(quantity: str, candidate: type[Form]) -> Found:
+    """Judge the published table where the candidates, which share a domain, are defined too."""
     name = f"published/{quantity}"
     table = load(name)
-    errors = compare([(name, table)]).entries[0].errors
+    form = form_of(table)
+    errors = judge(form, common_domain([type(form), candidate]))
     return Found(
         name, table.form, table.size, _operations(table), errors.rms, errors.largest, "coefficients"
     )

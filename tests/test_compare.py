@@ -1,11 +1,14 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from coefficients.catalogue import form_of, load
+from coefficients.catalogue import form_of, load, names
 from coefficients.compare import as_json, coefficient_rows, compare
-from fitting import form_values, off_grid_errors, off_grid_reference
+from coefficients.table import Table, parse, serialise
+from fitting import Domain, common_domain, form_values, off_grid_errors, off_grid_reference
+from integrals import Q
 
 QUANTITIES = ("ps", "g", "q", "r")
 
@@ -50,11 +53,52 @@ def test_where_tables_differ_most_is_found():
 
 
 def test_the_last_of_three_is_held_against_the_first():
-    names = ("published/ps", "published/ps@printed", "ps")
-    found = compare([(name, load(name)) for name in names])
-    assert tuple(entry.label for entry in found.entries) == names
+    labels = ("published/ps", "published/ps@printed", "ps")
+    found = compare([(name, load(name)) for name in labels])
+    assert tuple(entry.label for entry in found.entries) == labels
     assert found.entries[1].rms_ratio > 4
     assert found.difference == against_published("ps").difference
+
+
+def narrow(lower: float) -> Table:
+    """Give a table of R for other α: the coefficients are nearly right there too."""
+    data = json.loads(serialise(load("best/r-25")))
+    data["arguments"][0]["domain"][0] = lower
+    data["shape"]["least_alpha"] = lower
+    return parse(json.dumps(data), "itself")
+
+
+def test_tables_are_measured_where_both_are_defined():
+    one, other = load("published/r"), narrow(0.3)
+    found = compare([("one", one), ("other", other)])
+    turned = compare([("other", other), ("one", one)])
+    assert found.domain == turned.domain
+    assert as_json(found)["domain"] == {"alpha": [0.3, 1.0], "theta_f": [0.0, np.pi / 2]}
+    assert found.entries[0].errors == turned.entries[1].errors
+    # The largest error of the published table is below α = 0.3.
+    assert compare([("one", one)]).entries[0].errors.where["alpha"] < 0.3
+    points, exact = off_grid_reference(found.domain)
+    assert points[:, 0].min() >= 0.3
+    for table, entry in zip((one, other), found.entries, strict=True):
+        assert entry.errors.where["alpha"] >= 0.3
+        difference = form_values(form_of(table), points) - exact
+        assert entry.errors.rms == pytest.approx(np.sqrt(np.mean(difference**2)), rel=1e-12)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_published_tables_are_measured_on_their_whole_domain_beside_all_others(quantity):
+    published = type(form_of(load(f"published/{quantity}")))
+    every = [type(form_of(table)) for table in map(load, names()) if table.quantity == quantity]
+    assert len(every) > 2
+    assert common_domain(every).axes == published.axes
+
+
+def test_domains_without_a_common_part_are_refused():
+    below = Domain(Q, (replace(Q.axes[0], upper=0.2),))
+    above = Domain(Q, (replace(Q.axes[0], lower=0.2, upper=0.5),))
+    with pytest.raises(ValueError, match=r"density .* in common: \[0, 0.2\] and \[0.2, 0.5\]$"):
+        common_domain([below, above])
+    assert common_domain([above, above]) == above
 
 
 def test_a_table_does_not_differ_from_itself():
@@ -98,8 +142,8 @@ def test_coefficients_stand_side_by_side_under_their_names(quantity, count):
     found = against_published(quantity)
     rows = coefficient_rows(found)
     assert len(rows) == count
-    names, values = zip(*rows, strict=True)
-    assert list(names) == np.ravel(found.entries[0].table.coefficient_names).tolist()
+    labels, values = zip(*rows, strict=True)
+    assert list(labels) == np.ravel(found.entries[0].table.coefficient_names).tolist()
     for column, entry in enumerate(found.entries):
         expected = np.ravel(entry.table.coefficients).tolist()
         assert [row[column] for row in values] == expected

@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from fitting import Goal
+from fitting import Goal, RationalPs
 from shadefit import search
 
 GOAL = Goal("l2", rounding="float32")
@@ -32,6 +32,16 @@ def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, capsys
     # A goal of another kind is another search.
     with pytest.raises(TypeError):
         search.run("q", 5, None, 0.15, Goal("l2"), tmp_path, True)
+
+
+def test_the_published_table_is_judged_where_the_candidates_are():
+    (form, *_) = search._candidates("ps", 0.3)
+    part = search._published("ps", form)
+    whole = search._published("ps", RationalPs)
+    # The largest errors are those of the least α.
+    assert part.largest < 0.9 * whole.largest
+    assert part.rms < whole.rms
+    assert whole.operations == part.operations
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from coefficients.catalogue import load
+from coefficients.catalogue import form_of, load
 from coefficients.compare import compare
 from coefficients.cost import count
 from coefficients.shaders import exact_ps, shader
@@ -105,7 +105,7 @@ def closed_form(quantity: str) -> list[Mark]:
         return []
     exact, columns = _EXACT[quantity]
     program = trace(exact)
-    points, truth = off_grid_reference(type(shader(f"published/{quantity}").form))
+    points, truth = off_grid_reference(type(form_of(load(f"published/{quantity}"))))
     rows = columns(points).astype(np.float32)
     error = np.abs(evaluate(program, rows, np.float32)[:, 0] - truth)
     rms = float(np.sqrt(np.mean(error**2)))

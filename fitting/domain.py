@@ -1,0 +1,33 @@
+"""Where forms are judged: the domain of one, or what the domains of several have in common."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from fitting.form import Form
+from integrals import Axis, Integral
+
+
+@dataclass(frozen=True)
+class Domain:
+    """An integral, and its axes as far as they go."""
+
+    integral: Integral
+    axes: tuple[Axis, ...]
+
+
+def common_domain(forms: Sequence[type[Form] | Domain]) -> Domain:
+    """Give the part of the axes that all forms (or domains) of one integral have in common.
+
+    Raises ValueError where there is none.
+    """
+    sides = zip(*(form.axes for form in forms), strict=True)
+    return Domain(forms[0].integral, tuple(map(_common, sides)))
+
+
+def _common(axes: tuple[Axis, ...]) -> Axis:
+    highest = max(axes, key=lambda axis: (axis.lower, axis.open_below))
+    upper = min(axis.upper for axis in axes)
+    if not highest.lower < upper:
+        domains = " and ".join(dict.fromkeys(axis.domain for axis in axes))
+        raise ValueError(f"domains of {highest.name} have nothing in common: {domains}")
+    return replace(highest, upper=upper)
