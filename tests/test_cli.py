@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from coefficients.catalogue import FOLDER, load, names
 from coefficients.table import parse, serialise
 from integrals import INTEGRALS
-from shadefit import refit
+from shadefit import refit, search
 from shadefit.cli import main
 from shadefit.options import angle
 
@@ -274,6 +274,25 @@ def test_any_other_table_name_is_refused(capsys, text):
     refuses(capsys, "export", "--", text)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["search", "q"], "what it finished is in its folder, and the same command goes on"),
+        (["refit", "q"], "no file is half written"),
+    ],
+)
+def test_an_interruption_says_what_is_left(capsys, monkeypatch, arguments, said):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(refit, "run", interrupted)
+    monkeypatch.setattr(search, "run", interrupted)
+    monkeypatch.setattr(os, "_exit", sys.exit)
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (130, "")
+    assert err.startswith(f"shadefit: interrupted; {said}") and err.count("\n") == 1
+
+
 def test_an_interrupted_refit_leaves_the_old_table(tmp_path):
     table = tmp_path / "ps.json"
     table.write_text("old")
@@ -287,5 +306,8 @@ def test_an_interrupted_refit_leaves_the_old_table(tmp_path):
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=120)
     assert process.returncode not in (0, 2), err
+    # Otherwise it came before the command line had begun.
+    if process.returncode == 130:
+        assert b"shadefit: interrupted; no file is half written\n" in err
     assert table.read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["ps.json"]
