@@ -7,6 +7,7 @@ from typing import Any
 import jax
 
 from coefficients.catalogue import PUBLISHED, form_of, load
+from fitting import Form
 from integrals import INTEGRALS, Estimate, Integral
 from shadefit.terminal import print_json, print_table
 
@@ -14,9 +15,18 @@ MAX_SAMPLES = 1 << 24
 
 
 def run(
-    name: str, given: dict[str, float | None], samples: int, sequence: str, seed: int, json: bool
+    name: str,
+    given: dict[str, float | None],
+    extra: list[str],
+    samples: int,
+    sequence: str,
+    seed: int,
+    json: bool,
 ) -> None:
-    """Evaluate the integral `name` at the arguments that are given (None: not given)."""
+    """Evaluate the integral `name` at the arguments that are given (None: not given).
+
+    Beside the legs stand the published table, the refitted one, and those that `extra` names.
+    """
     if name not in INTEGRALS:
         raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(INTEGRALS)}")
     integral = INTEGRALS[name]
@@ -25,6 +35,7 @@ def run(
         raise ValueError(f"samples = {samples}: allowed are 2 to {MAX_SAMPLES}")
     if not 0 <= seed < 1 << 63:
         raise ValueError(f"seed = {seed}: allowed are 0 to 2⁶³ − 1")
+    forms = _forms(name, extra)
     options = (("samples", samples), ("sequence", sequence), ("seed", seed))
     legs = {}
     for leg_name in integral.legs:
@@ -32,11 +43,7 @@ def run(
         estimate = leg(*arguments.values())
         legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
     exact = legs[integral.reference]["value"]
-    known = {"published": f"published/{name}"} if name in PUBLISHED else {}
-    tables = {
-        label: _by_table(table, arguments, exact)
-        for label, table in (known | {"refitted": name}).items()
-    }
+    tables = {label: _by_form(form, arguments, exact) for label, form in forms.items()}
     if json:
         print_json({"quantity": name, "arguments": arguments, "legs": legs, "tables": tables})
         return
@@ -74,8 +81,21 @@ def _checked(integral: Integral, given: dict[str, float | None]) -> dict[str, fl
     return {axis.name: axis.check(float(values[axis.name] or 0.0)) for axis in integral.axes}
 
 
-def _by_table(table_name: str, arguments: dict[str, float], exact: float) -> dict:
-    form = form_of(load(table_name))
+def _forms(name: str, extra: list[str]) -> dict[str, Form]:
+    """Give the forms of the tables to show, by label; all have to be of the integral `name`."""
+    known = {"published": f"published/{name}"} if name in PUBLISHED else {}
+    forms = {label: form_of(load(table)) for label, table in (known | {"refitted": name}).items()}
+    for table in extra:
+        form = form_of(load(table))
+        if form.integral.name != name:
+            raise ValueError(
+                f"table {table} is of {form.integral.name}: allowed are those of {name}"
+            )
+        forms[table] = form
+    return forms
+
+
+def _by_form(form: Form, arguments: dict[str, float], exact: float) -> dict:
     outside = [
         f"{axis.name} is outside {axis.domain}"
         for axis in form.axes

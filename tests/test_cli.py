@@ -91,6 +91,22 @@ def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
     assert result["legs"]["closed_form"]["value"] > 0
 
 
+def test_evaluate_shows_the_tables_that_are_asked_for(capsys, tmp_path):
+    path = str(tmp_path / "mine.json")
+    assert run(capsys, "export", "best/q-9", "-o", path)[0] == 0
+    own = ["--table", "best/q-9", "--table", path]
+    _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own, "--json")
+    tables = json.loads(out)["tables"]
+    assert list(tables) == ["published", "refitted", *own[1::2]]
+    assert tables["best/q-9"] == tables[path]
+    stated = load("best/q-9").errors
+    assert stated is not None
+    assert abs(tables[path]["difference"]) <= stated.off_grid.max
+    _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own)
+    rows = [line.split() for line in out.splitlines() if line.strip().startswith(tuple(own[1::2]))]
+    assert [float(row[1]) for row in rows] == pytest.approx([tables[path]["value"]] * 2)
+
+
 def test_monte_carlo_is_reproducible_and_depends_on_the_seed(capsys):
     outputs = [
         run(capsys, "evaluate", "q", "--density", "0.3", "--seed", seed, "--json")[1]
@@ -202,6 +218,8 @@ def test_angles(text, radians):
         ["evaluate", "q", "--density", "0.1", "--samples", "1"],
         ["evaluate", "q", "--density", "0.1", "--seed", "-1"],
         ["evaluate", "q", "--density", "0.1", "--sequence", "sobol", "--samples", "100"],
+        ["evaluate", "q", "--density", "0.1", "--table", "best/g-9"],
+        ["evaluate", "q", "--density", "0.1", "--table", "best/nothing"],
         ["evaluate", "velvet", "--asymmetry", "0.1"],
         ["evaluate", "velvet", "--asymmetry", "-1"],
         ["refit", "ps", "--weight", "none"],

@@ -156,6 +156,13 @@ def _evaluate(
         float | None,
         typer.Option("--asymmetry", "--k", help="Asymmetry of Schlick's lobe, (−1, 0] (velvet)."),
     ] = None,
+    table: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A further table's name or path; may be given again.",
+            autocompletion=complete_table,
+        ),
+    ] = None,
     samples: Annotated[int, typer.Option(help="Monte Carlo samples.")] = 1 << 16,
     sequence: Annotated[
         Literal["random", "sobol"], typer.Option(help="Monte Carlo points.")
@@ -163,7 +170,7 @@ def _evaluate(
     seed: Annotated[int, typer.Option(help="Monte Carlo seed.")] = 0,
     json: Json = False,
 ) -> None:
-    """Evaluate an integral by every leg, and by the published and refitted tables.
+    """Evaluate an integral by every leg, by the published and refitted tables, and by others.
 
     Angles are radians unless 'deg' follows: 45deg, 0.785, 0.785rad.
     """
@@ -178,7 +185,7 @@ def _evaluate(
         "cos_v": cos_v,
         "asymmetry": asymmetry,
     }
-    evaluate.run(integral, given, samples, sequence, seed, json)
+    evaluate.run(integral, given, table or [], samples, sequence, seed, json)
 
 
 @app.command("list", epilog="Example: shadefit list --json")
