@@ -1,6 +1,7 @@
 """What is exported under a name: a table's functions, or the closed form of P_s."""
 
 import functools
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -70,6 +71,11 @@ def exact_ps(precision: str = "float", name: str = "FuzzPsExact") -> tuple[Funct
     return (function(name, parameters, exact, "P_s in closed form, without coefficients."),)
 
 
+def is_exact(name: str) -> bool:
+    """Tell whether a name is meant for a closed form, of which there is one, and no file's path."""
+    return name.startswith("exact/") and not (name.endswith(".json") or os.path.isfile(name))
+
+
 def shader(name: str, precision: str = "float", function_name: str | None = None) -> Shader:
     """Give what is exported under a name.
 
@@ -88,6 +94,10 @@ def shader(name: str, precision: str = "float", function_name: str | None = None
             _exact_columns,
             remark="NdotU = u·n, TdotU = u·t, NdotT = n·t, all unit vectors; t and −t are one "
             "fibre: turn t so that NdotT >= 0",
+        )
+    if is_exact(name):
+        raise ValueError(
+            f"no closed form is exported as {name!r}: allowed are {EXACT_PS} and tables' names"
         )
     table = load(name)
     form = form_of(table)

@@ -48,7 +48,9 @@ class Axis:
     def check(self, value: float) -> float:
         """Return `value`; raise ValueError if it is not in the domain."""
         if not (math.isfinite(value) and self.contains(value)):
-            raise ValueError(f"{self.name} = {value:g} is outside its domain {self.domain}")
+            unit = "" if self.unit == "1" else f" {self.unit}"
+            given, domain = f"{self.name} = {value:g}{unit}", f"{self.domain}{unit}"
+            raise ValueError(f"{given} is outside its domain {domain}")
         return value
 
 

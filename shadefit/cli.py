@@ -72,5 +72,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _fail(message: str, status: int) -> None:
-    print(f"shadefit: {' '.join(message.split())}", file=sys.stderr)
+    # Typer leaves in what its validator calls the kind of an error.
+    words = message.replace(": Value error, ", ": ").split()
+    print(f"shadefit: {' '.join(words)}", file=sys.stderr)
     sys.exit(status)

@@ -9,6 +9,7 @@ import jax
 from coefficients.catalogue import PUBLISHED, form_of, load
 from fitting import Form
 from integrals import INTEGRALS, Estimate, Integral
+from shadefit.options import checked
 from shadefit.terminal import print_json, print_table
 
 MAX_SAMPLES = 1 << 24
@@ -78,7 +79,7 @@ def _checked(integral: Integral, given: dict[str, float | None]) -> dict[str, fl
             flag = name.replace("_", "-")
             raise ValueError(f"--{flag} {problem} of {integral.name}, which takes {flags}")
     values = {axis.name: given[axis.name] for axis in integral.axes}
-    return {axis.name: axis.check(float(values[axis.name] or 0.0)) for axis in integral.axes}
+    return {axis.name: checked(axis, float(values[axis.name] or 0.0)) for axis in integral.axes}
 
 
 def _forms(name: str, extra: list[str]) -> dict[str, Form]:

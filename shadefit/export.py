@@ -11,7 +11,7 @@ from coefficients.cost import Cost, count
 from coefficients.files import write_whole
 from coefficients.printer import write
 from coefficients.proven import proofs
-from coefficients.shaders import EXACT_PS, Shader, exact_ps, shader
+from coefficients.shaders import EXACT_PS, Shader, exact_ps, is_exact, shader
 from coefficients.table import serialise
 from coefficients.targets import PRECISIONS, target
 from coefficients.toolchains import ToolchainError
@@ -46,8 +46,8 @@ def run(
         ):
             if given is not None:
                 raise ValueError(f"{option} {given!r} is for code: allowed with --to LANG")
-        if name == EXACT_PS:
-            raise ValueError(f"{EXACT_PS} has no coefficients: allowed with --to LANG")
+        if is_exact(name):
+            raise ValueError(f"{name} has no coefficients: allowed is {EXACT_PS} with --to LANG")
         text = serialise(load(name))
     else:
         text = code(name, language, precision, function_name, constants or "inline")

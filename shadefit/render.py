@@ -8,6 +8,7 @@ import numpy as np
 
 from coefficients.files import require_writable, write_whole_bytes
 from integrals import PS, Axis
+from shadefit.options import checked
 from shadefit.render_fibers import azimuths
 from shadefit.render_functions import table_sets
 from shadefit.render_image import colour, write_exr
@@ -63,7 +64,7 @@ class Settings:
     def check(self) -> None:
         """Raise ValueError for the first value that is outside its domain."""
         for axis in _OPTIONS:
-            axis.check(float(getattr(self, axis.name)))
+            checked(axis, float(getattr(self, axis.name)))
 
 
 @dataclass(frozen=True)

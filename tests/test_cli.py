@@ -253,6 +253,30 @@ def test_a_file_that_would_steer_the_terminal_is_refused(capsys, tmp_path, comma
     assert refuses(capsys, *command, str(path)).strip("\n").isprintable()
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (
+            ["evaluate", "ps", "--alpha", "1", "--theta-f", "45", "--theta-u", "0", "--phi", "0"],
+            "--theta-f = 45 rad is outside its domain [0, 1.5708] rad; in degrees, 0deg to 90deg",
+        ),
+        (["evaluate", "g", "--d", "0", "--nu", "2"], "--cos-v = 2 is outside its domain [0, 1]"),
+        (["render", "--sun-azimuth", "500"], "in degrees, -360deg to 360deg"),
+        (["render", "--size", "1025"], "--size = 1025 is outside its domain [16, 1024]"),
+        (
+            ["evaluate", "q", "--d", "0", "--sequence", "halton"],
+            "Invalid value for '--sequence': 'halton' is not one of 'random', 'sobol'.",
+        ),
+        (["export", "exact/q"], "exact/ps with --to LANG"),
+        (["export", "exact/q", "--to", "c"], "allowed are exact/ps and tables' names"),
+        (["cost", "exact/q"], "allowed are exact/ps and tables' names"),
+        (["export", "exact/none.json", "--to", "c"], "exact/none.json"),
+    ],
+)
+def test_a_refusal_names_the_option_its_unit_and_what_is_allowed(capsys, arguments, words):
+    assert words in refuses(capsys, *arguments)
+
+
 @pytest.mark.parametrize("grid", ["1", "0", "-3", "8", "130", "x", "1e9"])
 def test_a_grid_that_cannot_be_fitted_is_refused(capsys, tmp_path, grid):
     refuses(capsys, "refit", "all", "--grid", grid, "--out", str(tmp_path / "out"))

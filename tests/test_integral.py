@@ -152,3 +152,8 @@ def test_an_axis_knows_and_checks_its_domain(axis, inside, outside):
     for value in outside:
         with pytest.raises(ValueError, match=rf"{axis.name} = .* outside its domain [(\[]0, "):
             axis.check(value)
+
+
+def test_a_refused_angle_is_said_to_be_in_radians():
+    with pytest.raises(ValueError, match=r"theta_f = 45 rad is .* \[0, 1\.5708\] rad$"):
+        INTEGRALS["r"].axes[1].check(45.0)
