@@ -76,14 +76,15 @@ def _with_limits(evaluate, density: Array, cos_v: Array) -> Array:
     """Evaluate where d > 0 and ν > 0, else give the limit with its derivative.
 
     G = 1 + ν ln ν + O(ν) as ν → 0, so its slope there is −∞; G = d/ν + O(d² ln d) as d → 0. The
-    corner d = ν = 0 has no limit: without a layer G = 0 for every ν, and 0 it is.
+    corner d = ν = 0 has no limit: on the way there with d/ν = x, G → 1 − e^(−x). It is NaN.
     """
     layer, grazing = density > 0, cos_v <= 0
     inside = layer & ~grazing
     value = evaluate(jnp.where(inside, density, 1.0), jnp.where(inside, cos_v, 1.0))
     edge = 1 + _nu_log_nu(jnp.where(layer & grazing, cos_v, 1.0))
     empty = density * jax.lax.stop_gradient(1 / jnp.where(grazing, 1.0, cos_v))
-    return jnp.where(inside, value, jnp.where(layer, edge, empty))
+    edges = jnp.where(layer, edge, jnp.where(grazing, jnp.nan, empty))
+    return jnp.where(inside, value, edges)
 
 
 @jax.custom_jvp
@@ -99,7 +100,7 @@ def _steepening(primals, tangents):
 
 @leg(*AXES)
 def closed_form(density, cos_v) -> Estimate:
-    """Evaluate the closed form in exponential integrals."""
+    """Evaluate the closed form in exponential integrals; NaN at d = ν = 0, as every leg."""
     value = _with_limits(ambient_scattering, density, cos_v)
     return Estimate(value, 16 * np.finfo(float).eps * value)
 

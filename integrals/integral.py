@@ -59,7 +59,8 @@ class Integral:
     """A named quantity, its axes, and the independent legs that give its exact value.
 
     Each leg takes the axes' values in order, scalars in radians where the unit is so, and gives
-    an `Estimate`; a leg that does not exist is None. Outside the domain every leg gives NaN.
+    an `Estimate`; a leg that does not exist is None. Every leg gives NaN outside the domain, and
+    where the integral has no limit (G at d = ν = 0).
     """
 
     name: str

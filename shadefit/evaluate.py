@@ -1,6 +1,7 @@
 """`shadefit evaluate`: one exact value by every leg, and what the tables make of it."""
 
 import functools
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -10,7 +11,7 @@ from coefficients.catalogue import PUBLISHED, form_of, load
 from fitting import Form
 from integrals import INTEGRALS, Estimate, Integral
 from shadefit.options import checked
-from shadefit.terminal import print_json, print_table
+from shadefit.terminal import place, print_json, print_table
 
 MAX_SAMPLES = 1 << 24
 
@@ -44,6 +45,11 @@ def run(
         estimate = leg(*arguments.values())
         legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
     exact = legs[integral.reference]["value"]
+    if math.isnan(exact):
+        raise ValueError(
+            f"{integral.symbol} has no limit at {place(arguments)}, and no value: "
+            "allowed are all other points of its domain"
+        )
     tables = {label: _by_form(form, arguments, exact) for label, form in forms.items()}
     if json:
         print_json({"quantity": name, "arguments": arguments, "legs": legs, "tables": tables})

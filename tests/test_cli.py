@@ -260,6 +260,7 @@ def test_a_file_that_would_steer_the_terminal_is_refused(capsys, tmp_path, comma
             ["evaluate", "ps", "--alpha", "1", "--theta-f", "45", "--theta-u", "0", "--phi", "0"],
             "--theta-f = 45 rad is outside its domain [0, 1.5708] rad; in degrees, 0deg to 90deg",
         ),
+        (["evaluate", "g", "--d", "0", "--nu", "0"], "G has no limit at density 0, cos_v 0"),
         (["evaluate", "g", "--d", "0", "--nu", "2"], "--cos-v = 2 is outside its domain [0, 1]"),
         (["render", "--sun-azimuth", "500"], "in degrees, -360deg to 360deg"),
         (["render", "--size", "1025"], "--size = 1025 is outside its domain [16, 1024]"),

@@ -83,9 +83,23 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
 
 @pytest.mark.parametrize("leg", LEGS)
 def test_limits(leg):
-    empty, grazing = [(0, 0), (0, 1e-9), (0, 1)], [(1e-12, 0), (1, 0), (1e9, 0)]
+    empty, grazing = [(0, 1e-300), (0, 1e-9), (0, 1)], [(1e-300, 0), (1, 0), (1e9, 0)]
     value, _ = evaluator(leg)(*np.array(empty + grazing).T)
     np.testing.assert_array_equal(value, [0, 0, 0, 1, 1, 1])
+
+
+@pytest.mark.parametrize("leg", LEGS)
+def test_the_corner_without_a_limit_has_no_value(leg):
+    """Towards d = ν = 0 with d = xν, G tends to 1 − e^(−x): to anything in [0, 1]."""
+    value, error = evaluator(leg)(*np.zeros((2, 1)))
+    assert np.isnan(value).all()
+    assert np.isnan(error).all()
+
+
+def test_on_the_way_to_the_corner_the_value_is_that_of_the_way():
+    ways = np.array([1e-3, 0.1, 1.0, 10.0])
+    value, _ = evaluator("closed_form")(1e-12 * ways, np.full(4, 1e-12))
+    np.testing.assert_allclose(value, -np.expm1(-ways), atol=1e-10)
 
 
 @pytest.mark.parametrize("leg", LEGS)
