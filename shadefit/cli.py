@@ -9,11 +9,6 @@ import typer
 
 from shadefit.commands import code, pictures, tables
 
-# The status that typer makes of an interruption.
-_INTERRUPTED = 130
-# What an interruption leaves, where it is more than whole files or none.
-_KEPT = {"search": "what it finished is in its folder, and the same command goes on from there"}
-
 app = typer.Typer(
     name="shadefit",
     help="Exact shading integrals, certified curve fits, and coefficient tables.",
@@ -57,17 +52,10 @@ def main(arguments: list[str] | None = None) -> None:
     except (typer.TyperException, ValueError) as error:
         message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
         _fail(message, 2)
-    except (typer.Abort, KeyboardInterrupt):
-        status = _INTERRUPTED
     except BrokenPipeError:
         # The reader of our output has gone: not an error, but Python would complain at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(0)
-    if status == _INTERRUPTED:
-        kept = _KEPT.get(next(iter(given), ""), "no file is half written")
-        print(f"shadefit: interrupted; {kept}", file=sys.stderr, flush=True)
-        # At once: leaving in the ordinary way would wait for compilations to end.
-        os._exit(status)
     sys.exit(status or 0)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from coefficients.catalogue import load
 from coefficients.cost import Cost, count
-from coefficients.files import write_whole
+from coefficients.files import require_writable_file, write_whole
 from coefficients.printer import write
 from coefficients.proven import proofs
 from coefficients.shaders import EXACT_PS, Shader, exact_ps, is_exact, shader
@@ -38,6 +38,8 @@ def run(
     constants: str | None,
 ) -> None:
     """Write a table's JSON, or its code in a language, to a file, or print it."""
+    if output is not None:
+        require_writable_file(output)
     if language is None:
         for option, given in (
             ("--precision", precision),

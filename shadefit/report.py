@@ -7,7 +7,7 @@ from html import escape
 from importlib.resources import files
 from pathlib import Path
 
-from coefficients.files import require_writable, write_whole
+from coefficients.files import require_writable_file, write_whole
 from integrals import INTEGRALS
 from shadefit import report_tables as tables
 from shadefit.explorer import script
@@ -22,9 +22,7 @@ def run(out: Path) -> None:
 
     Raises ValueError where the file cannot be written.
     """
-    if out.is_dir():
-        raise ValueError(f"{out} is a folder: allowed is a file's name")
-    require_writable(out.parent)
+    require_writable_file(out)
     drawn = {}
     with stages() as progress:
         task = progress.add_task("")

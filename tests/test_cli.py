@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from coefficients.catalogue import FOLDER, load, names
 from coefficients.table import parse, serialise
 from integrals import INTEGRALS
-from shadefit import refit, search
+from shadefit import refit
 from shadefit.cli import main
 from shadefit.options import angle
 
@@ -317,40 +317,47 @@ def test_any_other_table_name_is_refused(capsys, text):
     refuses(capsys, "export", "--", text)
 
 
+def interrupted(*arguments: str, after: float) -> tuple[int, str, str]:
+    """Run the command line in a process that gets SIGINT: its status and what it wrote."""
+    code = "from shadefit.__main__ import main; print('begun', flush=True); main()"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        # Not that of a shell which starts others in the background: they ignore it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"begun\n"
+    time.sleep(after)
+    sent = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    assert time.monotonic() - sent < 10
+    return process.returncode, out.decode(), err.decode()
+
+
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "after", "said"),
     [
-        (["search", "q"], "what it finished is in its folder, and the same command goes on"),
-        (["refit", "q"], "no file is half written"),
+        (["evaluate", "r", "--alpha", "0.2", "--theta-f", "1"], 0.5, "no file is half written"),
+        (["search", "q"], 3.0, "what it finished is in its folder, and the same command goes on"),
+        (["refit", "ps"], 4.0, "no file is half written"),
     ],
 )
-def test_an_interruption_says_what_is_left(capsys, monkeypatch, arguments, said):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(refit, "run", interrupted)
-    monkeypatch.setattr(search, "run", interrupted)
-    monkeypatch.setattr(os, "_exit", sys.exit)
-    status, out, err = run(capsys, *arguments)
+def test_an_interruption_is_at_once_and_says_what_is_left(tmp_path, arguments, after, said):
+    """Whether the command is importing, compiling or computing."""
+    given = [] if arguments[0] == "evaluate" else ["--out", str(tmp_path)]
+    status, out, err = interrupted(*arguments, *given, after=after)
     assert (status, out) == (130, "")
-    assert err.startswith(f"shadefit: interrupted; {said}") and err.count("\n") == 1
+    assert err.startswith(f"shadefit: interrupted; {said}")
+    assert err.count("\n") == 1
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
 
 
 def test_an_interrupted_refit_leaves_the_old_table(tmp_path):
     table = tmp_path / "ps.json"
     table.write_text("old")
-    command = [sys.executable, "-c", "from shadefit.cli import main; main()", "refit", "ps"]
-    process = subprocess.Popen(
-        [*command, "--out", str(tmp_path)],
-        stderr=subprocess.PIPE,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-    )
-    time.sleep(3)
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=120)
-    assert process.returncode not in (0, 2), err
-    # Otherwise it came before the command line had begun.
-    if process.returncode == 130:
-        assert b"shadefit: interrupted; no file is half written\n" in err
+    assert interrupted("refit", "ps", "--out", str(tmp_path), after=3)[0] == 130
     assert table.read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["ps.json"]

@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from coefficients.files import unfinished
+
 # A minute compiles the largest table several times over; what takes longer hangs.
 TIME_LIMIT = 60.0
 
@@ -26,8 +28,8 @@ class ToolchainError(RuntimeError):
 @contextmanager
 def workspace() -> Generator[Path, None, None]:
     """Give a temporary folder for sources and programs, removed whatever happens."""
-    with TemporaryDirectory(prefix="shadefit-") as folder:
-        yield Path(folder)
+    with TemporaryDirectory(prefix="shadefit-") as folder, unfinished(Path(folder)) as path:
+        yield path
 
 
 def execute(
