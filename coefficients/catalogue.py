@@ -61,7 +61,10 @@ def load(name: str) -> Table:
         return table if name.endswith(AS_PRINTED) else corrected(table)
     # os.path, unlike Path, takes a name that is too long for one that does not exist.
     if name.endswith(".json") or os.path.isfile(name):
-        return corrected(read(Path(name)))
+        table = corrected(read(Path(name)))
+        # Whatever it is for: what it says of its form is true.
+        form_of(table)
+        return table
     allowed = ", ".join((*QUANTITIES, *(f"published/{q}" for q in PUBLISHED), *names_of_best()))
     raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
 

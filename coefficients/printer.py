@@ -171,6 +171,9 @@ def _header_comment(target: Target, header: Mapping[str, str]) -> list[str]:
 def _function_comment(function: Function, target: Target) -> list[str]:
     domains = []
     for parameter in function.parameters:
+        if parameter.size is not None:
+            # Another function's result: its domain is a rough one, of samples.
+            continue
         low, high = (f"{bound:.6g}" for bound in parameter.domain)
         unit = "" if parameter.unit == "1" else f" {parameter.unit}"
         domains.append(f"{parameter.name} in [{low}, {high}]{unit}")

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 SCHEMA = "shadefit.table/1"
 # No table is near this size: a larger file is refused before it is parsed.
 MAX_BYTES = 4 << 20
+MAX_DIGITS = 100
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
@@ -214,16 +215,26 @@ def parse(text: str, source: str) -> Table:
     Raises ValueError, one line, for anything that is not a valid table.
     """
     try:
-        data = json.loads(text, parse_constant=_refuse_constant)
+        data = json.loads(
+            text,
+            parse_constant=_refuse_constant,
+            parse_int=_integer,
+            object_pairs_hook=_without_repetition,
+        )
+        if not isinstance(data, dict):
+            raise ValueError("allowed is an object, {…}")
         return Table.model_validate(data, strict=True)
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the table"
+        # Of a choice of types the validator names each: a reader sees only keys and indices.
+        parts = [str(part) for part in first["loc"] if "[" not in str(part)]
+        place = ".".join(parts) or "the table"
         message = first["msg"].removeprefix("Value error, ")
         raise ValueError(f"{source}: {_one_line(place)}: {_one_line(message)}") from None
-    except (ValueError, RecursionError) as error:
-        reason = _one_line(str(error)) or "nested too deeply"
-        raise ValueError(f"{source} is no JSON table: {reason}") from None
+    except RecursionError:
+        raise ValueError(f"{source} is no JSON table: nested too deeply") from None
+    except ValueError as error:
+        raise ValueError(f"{source} is no JSON table: {_one_line(str(error))}") from None
 
 
 def _one_line(text: str) -> str:
@@ -239,7 +250,7 @@ def read(path: Path) -> Table:
             raise ValueError(f"{path}: no such file")
         if path.stat().st_size > MAX_BYTES:
             raise ValueError(f"{path} is larger than {MAX_BYTES} bytes: no table is")
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f"{path} is no UTF-8 text") from None
     except OSError as error:
@@ -251,6 +262,20 @@ def serialise(table: Table) -> str:
     """Give a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
     data = table.model_dump(by_alias=True, exclude_none=True)
     return _layout(data, "") + "\n"
+
+
+def _without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise ValueError(f"{max(keys, key=keys.count)!r} is there twice")
+    return found
+
+
+def _integer(digits: str) -> int:
+    if len(digits) > MAX_DIGITS:
+        raise ValueError(f"an integer has {len(digits)} digits: allowed are {MAX_DIGITS}")
+    return int(digits)
 
 
 def _refuse_constant(name: str) -> float:

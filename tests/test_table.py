@@ -277,6 +277,9 @@ def test_a_message_says_where_and_what():
     assert "(17,)" in message
     assert "quantity" in refused(changed(put("quantity", "s")))
     assert "comment" in refused(changed(put("comment", "hello")))
+    assert "coefficients.3: " in refused(changed(put("coefficients", 3, "0.5")))
+    assert "5000 digits" in refused(TEXT.replace(NUMBER, "9" * 5000))
+    assert refused(NO_JSON["nested too deeply"]).endswith("nested too deeply")
 
 
 NO_JSON = {
@@ -299,6 +302,7 @@ NO_JSON = {
     "digits without end": TEXT.replace(NUMBER, "9" * 5000),
     "an integer beyond float64": TEXT.replace(NUMBER, "1" + "0" * 400),
     "a name without end": TEXT.replace('"rational-r"', '"' + "r" * 10_000 + '"'),
+    "a key that is there twice": TEXT.replace('"quantity"', '"name": "r", "quantity"', 1),
     "too many coefficients": changed(
         lambda d: d.update(coefficients=[0.5] * 5000, coefficient_names=["c"] * 5000)
     ),
