@@ -11,6 +11,8 @@ EVEN, CRUSHED = "even", "crushed"
 # Waves that add up to the pattern of crushed velvet: how many, their lengths, the largest turn.
 _WAVES, _SHORTEST, _LONGEST, _TURN = 24, 0.3, 1.1, 1.3
 _MAX_BYTES = 64 << 20
+# Pixels an edge: a small file may say that it is of any size, and pixels take memory.
+_MAX_EDGE = 4096
 
 
 def azimuths(fibers: str, hits: Hits) -> np.ndarray:
@@ -41,11 +43,19 @@ def _crushed(position: np.ndarray) -> np.ndarray:
 def _read(path: Path) -> np.ndarray:
     """Read red and green (height, width, 2) of a PNG, as −1 … 1."""
     from matplotlib import image  # noqa: PLC0415
+    from PIL.PngImagePlugin import PngImageFile  # noqa: PLC0415
 
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise ValueError(f"fibers: {path} is larger than {_MAX_BYTES} bytes")
-        pixels = image.imread(io.BytesIO(path.read_bytes()), format="png")
+        data = path.read_bytes()
+        # This reads no pixels yet.
+        width, height = PngImageFile(io.BytesIO(data)).size
+        if max(width, height) > _MAX_EDGE:
+            raise ValueError(
+                f"fibers: {path} has {width}×{height} pixels: allowed are {_MAX_EDGE} an edge"
+            )
+        pixels = image.imread(io.BytesIO(data), format="png")
     except OSError as error:
         reason = error.strerror or "it is no PNG image"
         raise ValueError(

@@ -3,6 +3,7 @@
 import io
 import json
 import struct
+import zlib
 
 import jax
 import jax.numpy as jnp
@@ -176,6 +177,20 @@ def test_a_map_that_is_none_is_refused(tmp_path, content):
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(ValueError, match="fibers"):
+        azimuths(str(path), SCENES["sphere"].hits(SIZE))
+
+
+@pytest.mark.parametrize("size", [(4097, 1), (1, 4097), (15000, 15000), (2**31 - 1, 2**31 - 1)])
+def test_a_map_of_too_many_pixels_is_refused_before_they_are_read(tmp_path, size):
+    def chunk(kind, data):
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", *size, 8, 2, 0, 0, 0))
+    path = tmp_path / "map.png"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", b"") + chunk(b"IEND", b""))
+    with pytest.raises(ValueError, match=f"{size[0]}×{size[1]} pixels: allowed are 4096 an edge"):
         azimuths(str(path), SCENES["sphere"].hits(SIZE))
 
 
