@@ -2,8 +2,11 @@
 
 from pathlib import Path
 
+# These repeat what coefficients/catalogue.py and coefficients/shaders.py know, and tests hold them
+# to it: those import JAX, for which every press of the tab key would wait.
 _PUBLISHED = ("ps", "g", "q", "r")
 _NAMES = (*_PUBLISHED, "velvet")
+_EXACT = ("exact/ps",)
 
 
 def complete_quantity(incomplete: str) -> list[str]:
@@ -21,7 +24,7 @@ def complete_table(incomplete: str) -> list[str]:
 
 def complete_shader(incomplete: str) -> list[str]:
     """Complete what can be exported as code."""
-    exact = [name for name in ("exact/ps",) if name.startswith(incomplete)]
+    exact = [name for name in _EXACT if name.startswith(incomplete)]
     return [*complete_table(incomplete), *exact]
 
 
