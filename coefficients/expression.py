@@ -29,19 +29,19 @@ _INFIX = {
 _PREFIX = {"neg": "-", "not": "!"}
 
 
-# A constant of more digits than this is a fitted one: it goes into the table, if there is one.
+# A constant of more digits than this is a fitted one: it goes into the pool, if there is one.
 _SHORT = 4
 
 
 @dataclass(frozen=True)
-class Table:
+class ConstantPool:
     """The constants that stand in an array at the head of a function, in order."""
 
     name: str
     places: dict[float, str] = field(default_factory=dict)
 
     def place(self, constant: float) -> str:
-        """Write the reference to a constant, which joins the table if it is new."""
+        """Write the reference to a constant, which joins the pool if it is new."""
         return self.places.setdefault(constant, f"{self.name}[{len(self.places)}]")
 
 
@@ -49,7 +49,7 @@ class Table:
 class Wording:
     """What is needed to write a value: its program, its language, and the names given so far.
 
-    `names` holds the values that have a name. `table`, where there is one, takes up the constants
+    `names` holds the values that have a name. `pool`, where there is one, takes up the constants
     of many digits in the order in which they are first written.
     """
 
@@ -57,7 +57,7 @@ class Wording:
     target: Target
     precision: str
     names: Mapping[int, str]
-    table: Table | None = None
+    pool: ConstantPool | None = None
 
 
 def spelling(target: Target, precision: str, operation: str) -> Spelling | None:
@@ -98,8 +98,8 @@ def literal(wording: Wording, value: float) -> str:
 
 def _write(wording: Wording, operand: Operand) -> tuple[Tokens, int]:
     if not is_value(operand):
-        if wording.table is not None and len(re.sub(r"\D", "", repr(operand))) > _SHORT:
-            return [wording.table.place(operand)], Binding.ATOM
+        if wording.pool is not None and len(re.sub(r"\D", "", repr(operand))) > _SHORT:
+            return [wording.pool.place(operand)], Binding.ATOM
         text = literal(wording, operand)
         return [text], Binding.SIGN if text.startswith("-") else Binding.ATOM
     if operand in wording.names:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 
-from coefficients.expression import Table, Wording, computation, literal, lone_expression
+from coefficients.expression import ConstantPool, Wording, computation, literal, lone_expression
 from coefficients.layout import STEP, Break, Tokens, deeper, lay_out, wrap_words
 from coefficients.naming import ascii_text, free_name
 from coefficients.statements import choose_statements
@@ -64,8 +64,8 @@ def _function(
         )
     statements = choose_statements(program, input_names(function), target, precision, taken)
     taken = taken | set(statements.names.values())
-    table = Table(free_name("coefficients", taken)) if constants == "table" else None
-    wording = Wording(program, target, precision, statements.names, table)
+    pool = ConstantPool(free_name("coefficients", taken)) if constants == "table" else None
+    wording = Wording(program, target, precision, statements.names, pool)
     kind = target.types[precision]
 
     body = []
@@ -84,7 +84,7 @@ def _function(
     lines += lay_out(_signature(function, target, kind), "")
     lines += [target.opening] if target.opening is not None else []
     lines += _receive(function, target, kind)
-    lines += _write_table(wording, table) if table is not None and table.places else []
+    lines += _write_pool(wording, pool) if pool is not None and pool.places else []
     lines += body
     return lines + ([target.closing] if target.closing is not None else [])
 
@@ -147,16 +147,16 @@ def _receive(function: Function, target: Target, kind: str) -> list[str]:
     return lines
 
 
-def _write_table(wording: Wording, table: Table) -> list[str]:
+def _write_pool(wording: Wording, pool: ConstantPool) -> list[str]:
     target = wording.target
-    parts = {"type": target.types[wording.precision], "name": table.name}
+    parts = {"type": target.types[wording.precision], "name": pool.name}
     tokens: Tokens = []
-    for index, constant in enumerate(table.places):
+    for index, constant in enumerate(pool.places):
         tokens += [",", Break()] if index else []
         tokens.append(literal(wording, constant))
-    if len(table.places) == 1 and target.bracketed:
+    if len(pool.places) == 1 and target.bracketed:
         tokens.append(",")
-    opening = target.table_opening.format(**parts, size=len(table.places))
+    opening = target.table_opening.format(**parts, size=len(pool.places))
     rows = lay_out(tokens, STEP * 2, STEP * 2)
     return [STEP + opening, *rows, STEP + target.table_closing.format()]
 
