@@ -55,10 +55,8 @@ class MaterialForm(Form):
         """Give the form without floors, by the cosine of the azimuth."""
 
         def value(alpha, theta_f, theta_u, cos_phi):
-            cos_un, cos_ut = direction_cosines(theta_f, theta_u, cos_phi)
-            # It is a cosine, which an interval does not know.
-            cos_ut = jnp.maximum(jnp.minimum(cos_ut, 1.0), -1.0)
-            return self.unguarded_along(self.material(alpha, theta_f), cos_un, cos_ut)
+            cosines = _bounded_cosines(theta_f, theta_u, cos_phi)
+            return self.unguarded_along(self.material(alpha, theta_f), *cosines)
 
         return value, (*self.axes[:3], COS_PHI)
 
@@ -66,7 +64,7 @@ class MaterialForm(Form):
         """Give the margins of all directions, by the cosine of the azimuth."""
 
         def margins(alpha, theta_f, theta_u, cos_phi):
-            cosines = direction_cosines(theta_f, theta_u, cos_phi)
+            cosines = _bounded_cosines(theta_f, theta_u, cos_phi)
             return self.margins_along(self.material(alpha, theta_f), jnp.cos(theta_f), *cosines)
 
         return margins, (*self.axes[:3], COS_PHI)
@@ -75,6 +73,12 @@ class MaterialForm(Form):
         """Give the radicand or denominator that a fit could make negative."""
         cosines = direction_cosines(theta_f, theta_u, jnp.cos(phi))
         return self.positive_along(self.material(alpha, theta_f), *cosines)
+
+
+def _bounded_cosines(theta_f, theta_u, cos_phi) -> tuple[Array, Array]:
+    """Give u·n and u·t for a proof: an interval does not know that u·t is a cosine."""
+    cos_un, cos_ut = direction_cosines(theta_f, theta_u, cos_phi)
+    return cos_un, jnp.maximum(jnp.minimum(cos_ut, 1.0), -1.0)
 
 
 def surface_values(coefficients, count: int, degree: int, alpha, y) -> list[Array]:
