@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from fitting.domain import Domain
-from fitting.form import Form
+from fitting.form import Form, box_of
 from fitting.grid import off_grid_points
 from fitting.spread import COUNTS, spread_points
 from integrals import INTEGRALS, Axis, Estimate, Integral
@@ -99,8 +99,7 @@ def climb(size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], s
     `size` gives those (m,) of points (m, axes), and `sizes` are those of `points`. The largest
     error may be on a ridge that few points are on: it is sought nearer to them in every round.
     """
-    lower = np.array([axis.lower for axis in axes])
-    upper = np.array([axis.upper for axis in axes])
+    lower, upper = box_of(axes).T
     rng = np.random.default_rng(seed)
     cells = np.ravel_multi_index(
         np.minimum(CELLS * (points - lower) / (upper - lower), CELLS - 1).astype(int).T,
