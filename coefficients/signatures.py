@@ -208,11 +208,11 @@ _BUILDERS = {"ps": _of_material, "g": _of_g, "q": _of_q, "r": _of_r, "velvet": _
 # How the functions are called at points of the form's axes, where their order differs.
 _COLUMNS = {"ps": _ps_columns, "g": lambda points: (points[:, ::-1],)}
 REMARKS = {
-    "ps": "alpha is the projected area along the fibre, thetaF its polar angle: turn t so that "
-    "NdotT >= 0; NdotU = u·n and TdotU = u·t of the light's direction u. What is proven holds for "
-    "cosines of unit vectors",
+    "ps": "alpha, the roughness, is the projected area along the fibre t, thetaF its polar angle: "
+    "turn t so that NdotT >= 0; NdotU = u·n and TdotU = u·t of the light's direction u. What is "
+    "proven holds for cosines of unit vectors",
     "g": "NdotV = v·n of the view's direction v; density = NdotV = 0 is 0/0",
     "q": "density is thickness over mean free path",
-    "r": "alpha is the projected area along the fibre, thetaF its polar angle",
+    "r": "alpha, the roughness, is the projected area along the fibre, thetaF its polar angle",
     "velvet": "asymmetry is k of Schlick's lobe p_Schlick(k, -sin(t, h)), whose factor r is",
 }

@@ -30,7 +30,9 @@ def run(name: str, measure: bool, json: bool) -> None:
         f"{name}: operations",
         ["function", "evaluated for", *KINDS, "fma", "operations", "weighted"],
         [_row(when, function.name, counted[function.name]) for when, function in labelled],
-        f"fma: additions that could take up a product, counted in both. {note}".strip(),
+        "select: comparisons, selections, minima, maxima, roundings. sign: negations, absolute "
+        "values; not among the operations. fma: additions that could take up a product, counted in "
+        f"both. {note}".strip(),
     )
     if rates:
         print_table(

@@ -18,6 +18,7 @@ from coefficients.toolchains import ToolchainError
 from coefficients.toolchains.registry import toolchain
 from coefficients.verify import Difference, Problem, precision_of, run_code, text_of
 from fitting import off_grid_errors
+from fitting.spread import COUNTS
 from programs.function import Function
 from programs.trace import trace
 
@@ -105,14 +106,10 @@ def _header(
 ) -> dict[str, str]:
     problem = Problem(chosen, precision)
     measured, how = _measured(problem, language, source)
-    domain = ", ".join(
-        f"{axis.symbol} in {axis.domain}{'' if axis.unit == '1' else ' ' + axis.unit}"
-        for axis in chosen.axes
-    )
     head = {
         "Quantity": f"{chosen.quantity}: {chosen.integral.symbol} = {chosen.integral.definition}",
         "Equation": f"{chosen.equation} of table {name}" if chosen.form else chosen.equation,
-        "Domain": f"{domain}; all others without unit",
+        "Domain": f"{_domain(chosen.functions)}; all others without unit",
     }
     if chosen.remark:
         head["Arguments"] = chosen.remark
@@ -129,12 +126,15 @@ def _header(
     else:
         errors = off_grid_errors(chosen.form)
         own = Difference(errors.largest, errors.rms)
+        climbs = COUNTS[chosen.integral.name].climbs
+        uphill = ", and uphill from the worst" if climbs else ""
         head["Error in exact arithmetic"] = (
-            f"{text_of(own)} against the integral ({errors.points} points off the fitting grid)"
+            f"{text_of(own)} against the integral (rms over {errors.points} points off the fitting "
+            f"grid; largest sought on more, of the boundary and where it is steep{uphill})"
         )
     head[f"Error in {precision}"] = (
-        f"{text_of(measured)} against the integral ({len(problem.integral)} points, corners of the "
-        f"domain included; {how})"
+        f"{text_of(measured)} against the integral ({len(problem.integral)} fixed points, corners "
+        f"of the domain included; {how})"
     )
     if precision == "half":
         head["Half precision"] = _verdict(problem, own, measured)
@@ -146,6 +146,15 @@ def _header(
         head["Cost of the closed form"] = f"{described(exact)} ({EXACT_PS})"
     head["Made by"] = command
     return head
+
+
+def _domain(functions: tuple[Function, ...]) -> str:
+    """Give the domains of what the functions are called with, by their arguments' names."""
+    parameters = {p.name: p for each in functions for p in each.parameters if p.size is None}
+    return ", ".join(
+        f"{p.name} in [{p.domain[0]:.6g}, {p.domain[1]:.6g}]{'' if p.unit == '1' else ' ' + p.unit}"
+        for p in parameters.values()
+    )
 
 
 def _measured(problem: Problem, language: str, source: str) -> tuple[Difference, str]:

@@ -260,6 +260,24 @@ def test_every_language_and_precision_has_an_honest_header(few_points, language,
     assert source == source.encode("ascii").decode()
 
 
+@pytest.mark.parametrize(
+    ("name", "domain"),
+    [
+        ("q", "density in [0, 0.5]"),
+        (
+            EXACT_PS,
+            "NdotU in [0, 1], TdotU in [-1, 1], NdotT in [0, 1], alpha in [0.05, 1]",
+        ),
+        (
+            "published/ps",
+            "alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad, NdotU in [0, 1], TdotU in [-1, 1]",
+        ),
+    ],
+)
+def test_the_headers_domain_is_in_the_functions_arguments(name, domain):
+    assert export._domain(shader(name).functions) == domain
+
+
 def test_without_a_compiler_the_error_is_emulated(few_points, monkeypatch):
     monkeypatch.setattr(Toolchain, "missing", lambda self, precision: "not here")
     assert "emulated, every operation rounded: HLSL was not run" in " ".join(
