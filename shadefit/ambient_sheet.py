@@ -13,11 +13,14 @@ from shadefit.figures.style import ERRORS, FIBRE, VALUES, render
 from shading import roughness_from_spread
 
 SPREAD, TILT, DENSITY = 0.2, 45.0, 0.2
-LIGHTS = ("uniform", "from above", "where fibres point", "against fibres")
+LIGHTS = ("uniform", "from above", "where fibres point", "from the side", "against fibres")
 MODELS = {"exact": "model, exact functions", "published": "model, published tables"}
-# Views: sines of the polar angle up to a cosine of 0.1, and azimuths over half the circle.
+# Views: sines of the polar angle up to a cosine of 0.1, and azimuths over the circle: the light
+# from the side has no mirror in it.
 _SINES = np.sin(np.linspace(0, np.arccos(0.1), 17))
-_AZIMUTHS = np.linspace(0, np.pi, 19)
+_AZIMUTHS = np.arange(36) * np.pi / 18
+# As many chords as this look round; between the azimuths stands the trigonometric interpolation.
+_CHORDS = 180
 _INCHES = 1.75
 
 
@@ -65,11 +68,25 @@ def _draw(found: Radiances) -> Figure:
 
 
 def _disk(axis: Axes, values: np.ndarray, colours: str, norm: Normalize) -> QuadMesh:
-    """Colour the disk of views from its upper half, which the lower mirrors."""
-    half = values.reshape(len(_SINES), len(_AZIMUTHS))
-    around = np.concatenate([_AZIMUTHS, 2 * np.pi - _AZIMUTHS[-2::-1]])
-    whole = np.concatenate([half, half[:, -2::-1]], axis=1)
+    """Colour the disk of views."""
+    around = np.linspace(0, 2 * np.pi, _CHORDS + 1)
+    whole = periodic(values.reshape(len(_SINES), len(_AZIMUTHS)), _CHORDS)
     x, y = np.outer(_SINES, np.cos(around)), np.outer(_SINES, np.sin(around))
-    axis.set(xticks=[], yticks=[], aspect="equal")
+    # Room for the rim, which would be cut flat by the edges of the axes.
+    axis.set(xticks=[], yticks=[], aspect="equal", xlim=(-1.02, 1.02), ylim=(-1.02, 1.02))
     axis.spines[:].set_visible(False)
     return axis.pcolormesh(x, y, whole, shading="gouraud", cmap=colours, norm=norm)
+
+
+def periodic(values: np.ndarray, count: int) -> np.ndarray:
+    """Interpolate rows (m, n), one period each, at `count` equal steps and the end: (m, count + 1).
+
+    By the trigonometric polynomial through the values; `count` is at least n.
+    """
+    n = values.shape[1]
+    spectrum = np.fft.rfft(values, axis=1)
+    if n % 2 == 0:
+        # The highest frequency stands for two, of which the longer spectrum keeps one.
+        spectrum[:, -1] /= 2
+    finer = np.fft.irfft(spectrum, count, axis=1) * (count / n)
+    return np.concatenate([finer, finer[:, :1]], axis=1)

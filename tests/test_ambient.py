@@ -19,6 +19,7 @@ from shadefit.ambient_errors import (
     points,
     radiances,
 )
+from shadefit.ambient_sheet import periodic
 from shadefit.cli import main
 from shadefit.render_functions import functions
 from shading import (
@@ -160,3 +161,12 @@ def test_the_command_prints_what_it_measured(tmp_path, capsys):
     assert record["points"] == len(points())
     assert len(record["errors"]) == 2 * len(lights())
     assert (tmp_path / "ambient.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("n", [7, 8])
+def test_a_period_is_interpolated_by_its_harmonics(n):
+    def wave(x):
+        return np.stack([1 + np.cos(x) - 2 * np.sin(3 * x), np.cos(2 * x)])
+
+    found = periodic(wave(2 * np.pi * np.arange(n) / n), 50)
+    np.testing.assert_allclose(found, wave(np.linspace(0, 2 * np.pi, 51)), atol=1e-14)
