@@ -30,7 +30,7 @@ from shading.types import Matrix, Scalar, Vector
 ALPHA = Axis("alpha", "α", "1", 0.0, 1.0, "projected area along the fibre", open_below=True)
 THETA_F = Axis("theta_f", "θf", "rad", 0.0, np.pi / 2, "polar angle of the fibre")
 THETA_U = Axis("theta_u", "θu", "rad", 0.0, np.pi / 2, "polar angle of the light")
-PHI = Axis("phi", "φ", "rad", -2 * np.pi, 2 * np.pi, "azimuth of the light from the fibre's")
+PHI = Axis("phi", "φ", "rad", -2 * np.pi, 2 * np.pi, "azimuth of the light relative to the fibre")
 AXES = (ALPHA, THETA_F, THETA_U, PHI)
 
 

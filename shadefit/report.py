@@ -37,7 +37,7 @@ def run(out: Path) -> None:
 def page(pictures: Mapping[str, bytes]) -> str:
     """Give the report with PNG files of pictures, by the name of the picture."""
     return assemble(
-        tables.summary(quantities()),
+        tables.summary(list(INTEGRALS)),
         "\n".join(_figure(name, data) for name, data in pictures.items()),
         tables.errata(),
         tables.provenance(),

@@ -108,6 +108,17 @@ def test_the_summary_says_what_was_measured(monkeypatch):
     assert cells[row + 8] == "; ".join(proven(load("q").certificates))
 
 
+def test_the_summary_has_what_is_not_published_too():
+    cells = Outline(report_tables.summary(["velvet"])).cells
+    stated = load("velvet").errors
+    assert stated is not None
+    row = cells.index("velvet")
+    assert cells[row + 4 : row + 8] == [
+        *(f"{stated.off_grid.rms:.3e}", "—", f"{stated.off_grid.max:.3e}", "—"),
+    ]
+    assert any(cell.startswith("r = ") for cell in cells)
+
+
 def test_a_certificate_is_what_the_table_records():
     assert report_tables._certificate(load("g")) == "; ".join(proven(load("g").certificates))
     assert report_tables._certificate(load("published/g")) == "—"

@@ -133,7 +133,8 @@ def _compare(
 def _evaluate(
     integral: Annotated[str, typer.Argument(help="ps, g, q, r or velvet.", metavar="INTEGRAL")],
     alpha: Annotated[
-        float | None, typer.Option(help="Projected area along the fibre, (0, 1] (ps, r).")
+        float | None,
+        typer.Option(help="Roughness: projected area along the fibre, (0, 1] (ps, r)."),
     ] = None,
     theta_f: Annotated[
         float | None,
@@ -144,7 +145,9 @@ def _evaluate(
     ] = None,
     phi: Annotated[
         float | None,
-        typer.Option(parser=angle, metavar="ANGLE", help="Light's azimuth from the fibre's (ps)."),
+        typer.Option(
+            parser=angle, metavar="ANGLE", help="Light's azimuth relative to the fibre (ps)."
+        ),
     ] = None,
     density: Annotated[
         float | None, typer.Option("--density", "--d", help="Density of the layer, d ≥ 0 (g, q).")
