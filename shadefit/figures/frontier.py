@@ -1,6 +1,7 @@
 """The frontier: what an evaluation costs against how wrong it is, for every table there is."""
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -30,6 +31,19 @@ _SIZES = {"exact": 110, "published": 90}
 _Box = tuple[float, float, float, float]
 # The width of a letter of a label, in points.
 _LETTER = 4.3
+# Where a label may stand: its side of the mark and how far aside, and how far up, in points.
+_OFFSETS = tuple(
+    (side * aside, up)
+    for aside, ups in (
+        (6.0, (2.0, -11.0, -4.5, 14.0, -23.0)),
+        (14.0, (10.0, -19.0, -4.5)),
+        (24.0, (18.0, -27.0, 6.0, -15.0)),
+        (36.0, (26.0, -35.0, -4.5, 12.0, -21.0)),
+        (50.0, (34.0, -43.0, -4.5)),
+    )
+    for up in ups
+    for side in (1, -1)
+)
 _COUNTED = {"ps": "operations a direction"}
 
 
@@ -156,34 +170,61 @@ def _panel(axes: Axes, quantity: str, every: tuple[Mark, ...]) -> None:
 
 
 def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
-    """Name the frontier's other forms, each where there is room; `dots` are those of a point."""
+    """Name every other form, each where there is room; `dots` are those of a point.
+
+    Where a mark's neighbours leave none, the name stands further off, at the end of a thin line.
+    """
     places = [(mark.operations, mark.largest) for mark in every]
     spots = (axes.transData.transform(places) / dots).tolist()
+    low, high = (axes.bbox.get_points() / dots).tolist()
     taken = [_box(*spot, 8.0, 8.0, -4.0, -4.0) for spot in spots]
-    for mark in best_so_far(every):
+    for mark, (x, y) in zip(every, spots, strict=True):
         if mark.kind != "best":
             continue
-        x, y = spots[every.index(mark)]
         text = mark.name.removeprefix("best/")
-        for right, up in ((True, True), (False, False), (True, False), (False, True)):
-            width = _LETTER * len(text)
-            box = _box(x, y, width, 9.0, 6.0 if right else -6.0 - width, 2.0 if up else -11.0)
+        width = _LETTER * len(text)
+        for aside, up in _OFFSETS:
+            right = aside if aside > 0 else aside - width
+            box = _box(x, y, width, 9.0, float(right), up)
+            if box[0] < low[0] or box[1] < low[1] or box[2] > high[0] or box[3] > high[1]:
+                continue
             if any(_overlap(box, other) for other in taken):
+                continue
+            far = _gap(box, (x, y)) > 8
+            others = [spot for spot in spots if spot != [x, y]]
+            if _misread(box, (x, y), others, far):
                 continue
             taken.append(box)
             axes.annotate(
                 text,
                 (mark.operations, mark.largest),
-                xytext=(6 if right else -6, 4 if up else -9),
+                xytext=(aside, up + 2),
                 textcoords="offset points",
-                ha="left" if right else "right",
+                ha="left" if aside > 0 else "right",
                 fontsize=7.5,
+                arrowprops={"arrowstyle": "-", "lw": 0.5, "color": "#777777"} if far else None,
             )
             break
 
 
 def _box(x: float, y: float, width: float, height: float, right: float, up: float) -> _Box:
     return (x + right, y + up, x + right + width, y + up + height)
+
+
+def _misread(box: _Box, own: tuple[float, float], others: list[list[float]], far: bool) -> bool:
+    """Tell whether a label seems to be another mark's: one is nearer, or on the line to its own."""
+    if not far:
+        return any(_gap(box, other) < _gap(box, own) + 2 for other in others)
+    end = [min(max(x, low), high) for x, low, high in zip(own, box[:2], box[2:], strict=True)]
+    # Of the line what is clear of its own mark, against half a mark's width.
+    way = np.linspace(own, end, 40)[10:]
+    return any(np.hypot(*(way - other).T).min() < 4.5 for other in others)
+
+
+def _gap(box: _Box, spot: Sequence[float]) -> float:
+    """Give how far a box is from a place."""
+    aside = max(box[0] - spot[0], 0.0, spot[0] - box[2])
+    return math.hypot(aside, max(box[1] - spot[1], 0.0, spot[1] - box[3]))
 
 
 def _overlap(one: _Box, other: _Box) -> bool:

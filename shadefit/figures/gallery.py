@@ -88,8 +88,9 @@ PICTURES: dict[str, Picture] = {
     "frontier": Picture(
         "Cost against error",
         "The largest error of every table against the operations of its exported function (for P_s "
-        "those of a direction). The closed form is marked by its error in float32. A step "
-        "joins what nothing beats in both.",
+        "those of a direction), on the domain of the published one (α ≥ 0.15): 'shadefit list' "
+        "gives the error of a -wide table over its own. The closed form is marked by its error in "
+        "float32. A step joins what nothing beats in both.",
         draw_frontier,
     ),
 }

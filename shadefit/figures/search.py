@@ -3,6 +3,7 @@
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
+from integrals import INTEGRALS
 from shadefit.figures.style import COLOURS, MARKERS, render
 
 QUIET = "#aaaaaa"
@@ -41,7 +42,7 @@ def _figure(quantity: str, found, best, published, exact) -> Figure:
         axes.xaxis.set_minor_formatter(ScalarFormatter())
     if not wide:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set(xlabel="operations", ylabel="largest error", title=quantity)
+    axes.set(xlabel="operations", ylabel="largest error", title=f"${INTEGRALS[quantity].symbol}$")
     axes.grid(color="#e5e5e5", lw=0.6)
     axes.set_axisbelow(True)
     axes.legend()
