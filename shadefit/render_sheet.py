@@ -23,7 +23,7 @@ def _draw(comparisons: "list[Comparison]") -> Figure:
     names = list(comparisons[0].tables)
     columns = 1 + 2 * len(names)
     figure = Figure(
-        figsize=(_INCHES * columns + 0.9, (_INCHES + 0.03) * len(comparisons) + 0.25),
+        figsize=(_INCHES * columns + 0.9, (_INCHES + 0.2) * len(comparisons) + 0.25),
         layout="constrained",
     )
     axes = figure.subplots(len(comparisons), columns, squeeze=False)
@@ -37,6 +37,12 @@ def _draw(comparisons: "list[Comparison]") -> Figure:
     titles = ["exact", *names, *(f"{name} − exact" for name in names)]
     for axis, title in zip(axes[0], titles, strict=True):
         axis.set_title(title)
+    # In words too: on one scale, differences far below the largest are not to be seen.
+    for row, each in zip(axes, comparisons, strict=True):
+        for axis, name in zip(row[1 + len(names) :], names, strict=True):
+            off = np.abs(each.difference(name))
+            rms = float(np.sqrt(np.mean(off**2)))
+            axis.set_xlabel(f"rms {rms:.1e}, largest {off.max():.1e}", fontsize=8)
     for axis in axes.ravel():
         axis.set(xticks=[], yticks=[])
         axis.spines[:].set_visible(False)
