@@ -185,4 +185,4 @@ def _list(entries: dict[str, str | None]) -> str:
 
 def markup(text: str) -> str:
     """Escape a text for HTML and set what stands behind '_' as a subscript: P_s, ∫_Ω."""
-    return re.sub(r"_(\w)", r"<sub>\1</sub>", escape(text))
+    return re.sub(r"_(\w+)", r"<sub>\1</sub>", escape(text))

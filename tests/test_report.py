@@ -117,6 +117,7 @@ def test_the_summary_has_what_is_not_published_too():
         *(f"{stated.off_grid.rms:.3e}", "—", f"{stated.off_grid.max:.3e}", "—"),
     ]
     assert any(cell.startswith("r = ") for cell in cells)
+    assert "p<sub>Schlick</sub>(k" in report_tables.summary(["velvet"])
 
 
 def test_a_certificate_is_what_the_table_records():
