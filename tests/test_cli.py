@@ -319,13 +319,15 @@ def test_any_other_table_name_is_refused(capsys, text):
 
 def interrupted(*arguments: str, after: float) -> tuple[int, str, str]:
     """Run the command line in a process that gets SIGINT: its status and what it wrote."""
-    code = "from shadefit.__main__ import main; print('begun', flush=True); main()"
+    # A shell that starts others in the background has them ignore it.
+    code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from shadefit.__main__ import main; print('begun', flush=True); main()"
+    )
     process = subprocess.Popen(
         [sys.executable, "-c", code, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        # Not that of a shell which starts others in the background: they ignore it.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),  # noqa: PLW1509
     )
     assert process.stdout is not None
     assert process.stdout.readline() == b"begun\n"

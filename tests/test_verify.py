@@ -275,9 +275,9 @@ def test_verify_says_by_its_status_that_something_failed(capsys, monkeypatch):
         (["export", "q", "--precision", "half"], "allowed with --to"),
         (["export", "q", "--name", "Fn"], "allowed with --to"),
         (["export", "q", "--constants", "table"], "allowed with --to"),
-        (["export", EXACT_PS], "allowed with --to"),
-        (["export", "exact/g", "--to", "c"], "no table"),
-        (["cost", "exact/q"], "no table"),
+        (["export", EXACT_PS], "with --to LANG"),
+        (["export", "exact/g", "--to", "c"], "no closed form"),
+        (["cost", "exact/q"], "no closed form"),
     ],
 )
 def test_bad_input_is_one_line(capsys, tmp_path, arguments, said):
