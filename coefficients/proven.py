@@ -32,13 +32,12 @@ def certified(form: Form, stated: Certificates | None) -> Certificates | None:
     if not found.holds:
         return None
     values = certify_range(form)
+    room = certify_conservative(form).bound if isinstance(form, ConservativeNorm) else -math.inf
     return Certificates(
         denominator_bound=found.bound if math.isfinite(found.bound) else None,
         boxes=found.boxes,
         range=None if values is None else [values.lower, values.upper],
-        conservative_bound=certify_conservative(form).bound
-        if isinstance(form, ConservativeNorm)
-        else None,
+        conservative_bound=room if math.isfinite(room) else None,
     )
 
 

@@ -65,6 +65,14 @@ def test_what_a_file_says_of_itself_is_no_proof(tmp_path):
     assert proofs(poles) == ["nothing: a denominator may vanish"]
 
 
+def test_a_file_that_says_falsely_that_it_loses_energy_is_not_believed(tmp_path):
+    table = json.loads(serialise(load("velvet")))
+    lower = [c - 0.01 for c in table["coefficients"]]
+    found = proofs(written(tmp_path / "bright.json", "velvet", coefficients=lower))
+    assert found
+    assert "none above the exact value" not in found
+
+
 @pytest.mark.parametrize("name", ["q", "best/g-9", "velvet"])
 def test_a_copy_of_a_table_proves_as_much(name, tmp_path):
     assert proofs(written(tmp_path / "copy.json", name)) == proofs(name)
