@@ -1,16 +1,16 @@
 """Coefficient tables: what is written to and read from JSON. Host data only, no JAX."""
 
-import json
 import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from coefficients.json_text import laid_out, read_object
+
 SCHEMA = "shadefit.table/1"
 # No table is near this size: a larger file is refused before it is parsed.
 MAX_BYTES = 4 << 20
-MAX_DIGITS = 100
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
@@ -215,15 +215,7 @@ def parse(text: str, source: str) -> Table:
     Raises ValueError, one line, for anything that is not a valid table.
     """
     try:
-        data = json.loads(
-            text,
-            parse_constant=_refuse_constant,
-            parse_int=_integer,
-            object_pairs_hook=_without_repetition,
-        )
-        if not isinstance(data, dict):
-            raise ValueError("allowed is an object, {…}")
-        return Table.model_validate(data, strict=True)
+        return Table.model_validate(read_object(text), strict=True)
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
         # Of a choice of types the validator names each: a reader sees only keys and indices.
@@ -261,57 +253,4 @@ def read(path: Path) -> Table:
 def serialise(table: Table) -> str:
     """Give a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
     data = table.model_dump(by_alias=True, exclude_none=True)
-    return _layout(data, "") + "\n"
-
-
-def _without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        keys = [key for key, _ in pairs]
-        raise ValueError(f"{max(keys, key=keys.count)!r} is there twice")
-    return found
-
-
-def _integer(digits: str) -> int:
-    if len(digits) > MAX_DIGITS:
-        raise ValueError(f"an integer has {len(digits)} digits: allowed are {MAX_DIGITS}")
-    return int(digits)
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no JSON number")
-
-
-def _layout(value: Any, indent: str) -> str:
-    """Lay JSON out with containers of scalars wrapped to one line or at 100 columns."""
-    inner = indent + "  "
-    if isinstance(value, dict) and value:
-        items = [f"{inner}{json.dumps(key)}: {_layout(each, inner)}" for key, each in value.items()]
-        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
-    if isinstance(value, list) and value:
-        if any(isinstance(each, dict | list) for each in value):
-            items = [f"{inner}{_layout(each, inner)}" for each in value]
-            return "[\n" + ",\n".join(items) + f"\n{indent}]"
-        return _wrapped([_scalar(each) for each in value], indent)
-    return _scalar(value)
-
-
-def _wrapped(items: list[str], indent: str) -> str:
-    one_line = f"[{', '.join(items)}]"
-    if len(one_line) + len(indent) <= 100:
-        return one_line
-    lines, line = [], ""
-    for item in items:
-        if line and len(indent) + 2 + len(line) + len(item) + 2 > 100:
-            lines.append(line)
-            line = ""
-        line += (" " if line else "") + item + ","
-    lines.append(line.removesuffix(","))
-    body = "\n".join(f"{indent}  {each}" for each in lines)
-    return f"[\n{body}\n{indent}]"
-
-
-def _scalar(value: Any) -> str:
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ValueError(f"{value} cannot be written as JSON")
-    return json.dumps(value, ensure_ascii=False)
+    return laid_out(data) + "\n"
