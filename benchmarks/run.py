@@ -23,10 +23,10 @@ from plain_scipy import scattered_fraction as by_numpy
 from coefficients.signatures import light_cosines
 from fitting.cells import fit_cells
 from fitting.errors import exact_values
-from fitting.grid import trapezoid_grid
 from fitting.paper import RationalPs, RationalR
+from fitting.points.grids import trapezoid_grid
 from integrals import PS, R
-from integrals.ps import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
+from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
 
 HERE = Path(__file__).parent
 CELLS = 5

@@ -16,7 +16,7 @@ from coefficients.table import SCHEMA, Table, parse, read
 from fitting import PAPER_FORMS, Fit, Form
 from fitting.families import FAMILIES, form_class
 from fitting.goal import LEAST_SQUARES
-from fitting.samples import Sample
+from fitting.points.sample import Sample
 from fitting.velvet import ConservativeNorm
 from integrals import INTEGRALS
 

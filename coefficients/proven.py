@@ -5,9 +5,9 @@ import math
 from coefficients.catalogue import form_of, is_known, load
 from coefficients.table import Certificates
 from fitting import Form
-from fitting.bounds import certify_range
-from fitting.certificate import certify_denominators
 from fitting.improve import ENOUGH
+from fitting.proofs.pole_proof import certify_denominators
+from fitting.proofs.range_proof import certify_range
 from fitting.velvet import ConservativeNorm, certify_conservative
 
 _DIGITS = 1e4

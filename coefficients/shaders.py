@@ -12,7 +12,7 @@ from coefficients.signatures import COSINE, REMARKS, arguments, light_cosines, s
 from coefficients.table import Table
 from fitting import Form
 from integrals import PS, Axis, Integral
-from integrals.ps import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
+from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
 from programs.function import Function, Parameter, function
 
 EXACT_PS = "exact/ps"

@@ -17,17 +17,17 @@ from itertools import product
 
 import numpy as np
 
-from coefficients.printer import write
 from coefficients.shaders import Shader
-from coefficients.targets import PRECISIONS, target
-from coefficients.toolchains import ToolchainError
-from coefficients.toolchains.registry import toolchain
 from fitting import exact_values
-from fitting.grid import off_grid_points
+from fitting.points.grids import off_grid_points
 from integrals import Axis
 from programs.function import Function
+from programs.languages import PRECISIONS, target
+from programs.printing.printer import write
 from programs.program import evaluate
-from programs.trace import trace
+from programs.toolchains import ToolchainError
+from programs.toolchains.registry import toolchain
+from programs.tracing.tracer import trace
 
 # Four units in the last place an operation, where NumPy has half a one.
 SLACK = 8.0

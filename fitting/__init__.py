@@ -4,10 +4,6 @@ A `Form` evaluates one point and carries its coefficients; a `Grid` is where it 
 is the result with its errors and the proof that it has no pole in its domain.
 """
 
-from fitting.certificate import Certificate as Certificate
-from fitting.certificate import certify_denominators as certify_denominators
-from fitting.domain import Domain as Domain
-from fitting.domain import common_domain as common_domain
 from fitting.errors import Errors as Errors
 from fitting.errors import exact_values as exact_values
 from fitting.errors import form_values as form_values
@@ -19,12 +15,16 @@ from fitting.fit import Fit as Fit
 from fitting.fit import refit as refit
 from fitting.form import Form as Form
 from fitting.goal import Goal as Goal
-from fitting.grid import WEIGHTS as WEIGHTS
-from fitting.grid import Grid as Grid
-from fitting.grid import Weight as Weight
 from fitting.improve import improve as improve
 from fitting.paper import PAPER_FORMS as PAPER_FORMS
 from fitting.paper import QuadraticQ as QuadraticQ
 from fitting.paper import RationalG as RationalG
 from fitting.paper import RationalPs as RationalPs
 from fitting.paper import RationalR as RationalR
+from fitting.points.domain import Domain as Domain
+from fitting.points.domain import common_domain as common_domain
+from fitting.points.grids import WEIGHTS as WEIGHTS
+from fitting.points.grids import Grid as Grid
+from fitting.points.grids import Weight as Weight
+from fitting.proofs.pole_proof import Certificate as Certificate
+from fitting.proofs.pole_proof import certify_denominators as certify_denominators

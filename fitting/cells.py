@@ -12,9 +12,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from fitting.grid import Grid, Weight, light_directions
 from fitting.paper import RationalPs, direction_basis
-from integrals.ps import scattered_fraction
+from fitting.points.grids import Grid, Weight, light_directions
+from integrals.fuzz.ps import scattered_fraction
 from shading import direction_cosines
 
 # 48² = 2,304 directions a cell; 96² change the limit's rms by less than 1e-6 (tests/test_cells.py).

@@ -7,10 +7,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from fitting.domain import Domain
 from fitting.form import Form, box_of
-from fitting.grid import off_grid_points
-from fitting.spread import COUNTS, spread_points
+from fitting.points.domain import Domain
+from fitting.points.grids import off_grid_points
+from fitting.points.scattered import COUNTS, spread_points
 from integrals import INTEGRALS, Axis, Estimate, Integral
 
 OFF_GRID_SEED = 20200717

@@ -7,18 +7,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from fitting.bounds import certify_range
-from fitting.branch import Bounds
 from fitting.cells import DIRECTIONS_PER_ANGLE, fit_cells, largest_error
-from fitting.certificate import Certificate, certify_denominators
 from fitting.errors import Errors, exact_estimates, form_values, measure, off_grid_errors
 from fitting.form import Form
 from fitting.goal import LEAST_SQUARES, Goal
-from fitting.grid import WEIGHTS, Grid, Weight, gauss_grid, trapezoid_grid
 from fitting.paper import QuadraticQ, RationalG, RationalPs, RationalR
+from fitting.points.grids import WEIGHTS, Grid, Weight, gauss_grid, trapezoid_grid
+from fitting.points.sample import Sample
+from fitting.proofs.pole_proof import Certificate, certify_denominators
+from fitting.proofs.range_proof import certify_range
 from fitting.rational import fit_quadratic_q, fit_rational_g, fit_rational_ps, fit_rational_r
-from fitting.samples import Sample
 from fitting.velvet import ConservativeNorm, certify_conservative, fit_conservative_norm
+from programs.bounding.branch_and_bound import Bounds
 
 Progress = Callable[[str], None]
 
@@ -97,7 +97,7 @@ def _refit_ps(count: int, weight: Weight, progress: Progress) -> Fit:
         points=len(grid.weights) * DIRECTIONS_PER_ANGLE**2,
     )
     solver = "QR per cell; Levenberg–Marquardt (optimistix) of all coefficients together"
-    error = 4 * np.finfo(float).eps / RationalPs.axes[0].lower  # integrals.ps.closed_form's own
+    error = 4 * np.finfo(float).eps / RationalPs.axes[0].lower
     return _judged(form, grid, weight, DIRECTIONS_PER_ANGLE**2, solver, error, on_grid)
 
 

@@ -12,7 +12,7 @@ from jax import Array
 from integrals import Axis, Integral
 from programs.function import Function, Parameter
 from programs.program import Program
-from programs.trace import trace
+from programs.tracing.tracer import trace
 
 
 class Form(eqx.Module):

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from fitting.minimax import Side
+from fitting.solvers.minimax import Side
 
 Norm = Literal["l2", "linf"]
 Rounding = Literal["none", "float32", "float16"]

@@ -6,8 +6,8 @@ import numpy as np
 
 from fitting.families.r import VARIABLES, Exponents, monomial_r
 from fitting.form import Form
-from fitting.minimax import linear_parts
-from fitting.samples import Sample, sample_of
+from fitting.points.sample import Sample, sample_of
+from fitting.solvers.minimax import linear_parts
 
 # Monomials zⁱyʲ that the numerator and the denominator choose from, and how many they may have.
 NUMERATOR = tuple((i, j) for i in range(4) for j in range(4))

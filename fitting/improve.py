@@ -10,8 +10,6 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from fitting.bounds import certify_range
-from fitting.certificate import certify_denominators
 from fitting.errors import (
     check_reference,
     climb,
@@ -23,8 +21,13 @@ from fitting.errors import (
 from fitting.fit import Fit, Progress
 from fitting.form import Form
 from fitting.goal import Goal
-from fitting.grid import Weight
-from fitting.minimax import (
+from fitting.points.grids import Weight
+from fitting.points.sample import SEED, Sample, sample_at, sample_of, scale_at
+from fitting.points.scattered import COUNTS
+from fitting.proofs.pole_proof import certify_denominators
+from fitting.proofs.range_proof import certify_range
+from fitting.solvers.least_squares import solve_nonlinear
+from fitting.solvers.minimax import (
     Residuals,
     badness,
     limits,
@@ -33,9 +36,6 @@ from fitting.minimax import (
     minimise_largest,
     residuals,
 )
-from fitting.samples import SEED, Sample, sample_at, sample_of, scale_at
-from fitting.solve import solve_nonlinear
-from fitting.spread import COUNTS
 
 # Steps, and fewer for forms of many coefficients, which step slowly.
 STEPS, STEPS_OF_MANY, MANY = 1000, 200, 20

@@ -12,9 +12,9 @@ import numpy as np
 from jax import Array
 
 from fitting.cells import Cells
-from fitting.grid import Grid, trapezoid_grid
 from fitting.paper import RationalG, terms
-from fitting.solve import solve_linear, solve_nonlinear
+from fitting.points.grids import Grid, trapezoid_grid
+from fitting.solvers.least_squares import solve_linear, solve_nonlinear
 
 # Denominators are pushed up to this at nodes of a grid of their own, PENALTY_NODES an axis.
 DENOMINATOR_FLOOR = 0.02

@@ -13,13 +13,13 @@ import numpy as np
 from jax import Array
 from scipy.optimize import linprog
 
-from fitting.certificate import Certificate, bound_below
 from fitting.form import Form
-from fitting.grid import Grid
+from fitting.points.grids import Grid
+from fitting.proofs.pole_proof import Certificate, bound_below
 from integrals import VELVET
-from integrals.velvet import normalisation, series_coefficients
+from integrals.fuzz.velvet import normalisation, series_coefficients
 from programs.function import Function, Parameter
-from programs.trace import trace
+from programs.tracing.tracer import trace
 from shading.types import Scalar
 
 # What (B̃ − B)/x is kept above between the nodes: far more than any rounding, far less than r̃ loses.

@@ -4,13 +4,13 @@ The legs of an integral share the model's functions and nothing else, so that ea
 others. All need float64, take scalars, and may be put under `jit`, `vmap` and `grad`.
 """
 
-from integrals.g import G as G
-from integrals.integral import Axis as Axis
-from integrals.integral import Estimate as Estimate
-from integrals.integral import Integral as Integral
-from integrals.ps import PS as PS
-from integrals.q import Q as Q
-from integrals.r import R as R
-from integrals.velvet import VELVET as VELVET
+from integrals.fuzz.g import G as G
+from integrals.fuzz.ps import PS as PS
+from integrals.fuzz.q import Q as Q
+from integrals.fuzz.r import R as R
+from integrals.fuzz.velvet import VELVET as VELVET
+from integrals.reference import Axis as Axis
+from integrals.reference import Estimate as Estimate
+from integrals.reference import Integral as Integral
 
 INTEGRALS = {integral.name: integral for integral in (PS, G, Q, R, VELVET)}

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from integrals.integral import Estimate
+from integrals.reference import Estimate
 
 Sequence = Literal["random", "sobol"]
 

@@ -30,6 +30,6 @@ def complete_shader(incomplete: str) -> list[str]:
 
 def complete_language(incomplete: str) -> list[str]:
     """Complete a language."""
-    from coefficients.targets import TARGETS
+    from programs.languages import TARGETS
 
     return [key for key in TARGETS if key.startswith(incomplete)]

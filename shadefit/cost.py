@@ -2,10 +2,10 @@
 
 from dataclasses import asdict
 
-from coefficients.cost import Cost
 from coefficients.shaders import EXACT_PS, exact_ps, shader
-from coefficients.throughput import Throughput, throughput
+from programs.cost import Cost
 from programs.function import Function
+from programs.toolchains.throughput import Throughput, throughput
 from shadefit.export import KINDS, costs
 from shadefit.terminal import print_json, print_table
 

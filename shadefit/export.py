@@ -7,20 +7,20 @@ from pathlib import Path
 import numpy as np
 
 from coefficients.catalogue import load
-from coefficients.cost import Cost, count
 from coefficients.files import require_writable_file, write_whole
-from coefficients.printer import write
 from coefficients.proven import proofs
 from coefficients.shaders import EXACT_PS, Shader, exact_ps, is_exact, shader
 from coefficients.table import serialise
-from coefficients.targets import PRECISIONS, target
-from coefficients.toolchains import ToolchainError
-from coefficients.toolchains.registry import toolchain
 from coefficients.verify import Difference, Problem, precision_of, run_code, text_of
 from fitting import off_grid_errors
-from fitting.spread import COUNTS
+from fitting.points.scattered import COUNTS
+from programs.cost import Cost, count
 from programs.function import Function
-from programs.trace import trace
+from programs.languages import PRECISIONS, target
+from programs.printing.printer import write
+from programs.toolchains import ToolchainError
+from programs.toolchains.registry import toolchain
+from programs.tracing.tracer import trace
 
 # Half is good enough where it adds no more to a fit's error than the error itself; the closed form,
 # which has none, may lose two bits of the eleven that half has.

@@ -12,7 +12,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from coefficients.catalogue import PUBLISHED, form_of, from_fit, load, names_of_best
-from coefficients.cost import count
 from coefficients.files import require_writable, write_whole, write_whole_bytes
 from coefficients.shaders import functions_of
 from coefficients.table import SCHEMA, Table, read, serialise
@@ -20,7 +19,8 @@ from fitting import Form, Goal, common_domain, improve, judge
 from fitting.families import candidates
 from fitting.grow import grown_r
 from integrals import R
-from programs.trace import trace
+from programs.cost import count
+from programs.tracing.tracer import trace
 from shadefit.figures.frontier import best_so_far, closed_form
 from shadefit.figures.search import draw
 from shadefit.terminal import print_json, print_table, stages

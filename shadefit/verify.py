@@ -3,8 +3,8 @@
 from dataclasses import asdict
 
 from coefficients.shaders import shader
-from coefficients.targets import PRECISIONS, TARGETS, target
 from coefficients.verify import SLACK, Check, Problem, check, precision_of
+from programs.languages import PRECISIONS, TARGETS, target
 from shadefit.terminal import print_json, print_table, stages
 
 

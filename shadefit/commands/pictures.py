@@ -58,7 +58,7 @@ def _render(
     json: Json = False,
 ) -> None:
     """Render velvet with exact functions and with tables, side by side: render.png, render.exr."""
-    from shadefit import render
+    from shadefit.render import compare as render
 
     settings = render.Settings(
         density, spread, tilt, fiber, base, sun, sun_height, sun_azimuth, sky, fibers, size
@@ -71,7 +71,7 @@ def _report(
     out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("build/report.html"),
 ) -> None:
     """Write one HTML file: tables and their worth, figures, errata, and an explorer."""
-    from shadefit import report
+    from shadefit.report import page as report
 
     report.run(out)
 
@@ -82,6 +82,6 @@ def _ambient(
     json: Json = False,
 ) -> None:
     """Measure the ambient model against the integral of the whole BRDF, and its energy."""
-    from shadefit import ambient
+    from shadefit.ambient import command as ambient
 
     ambient.run(out, json)

@@ -13,15 +13,15 @@ from matplotlib.lines import Line2D
 
 from coefficients.catalogue import form_of, load
 from coefficients.compare import compare
-from coefficients.cost import count
 from coefficients.shaders import exact_ps, shader
 from fitting import off_grid_reference
 from integrals import INTEGRALS
-from integrals.g import ambient_scattering
-from integrals.q import average_penetration
+from integrals.fuzz.g import ambient_scattering
+from integrals.fuzz.q import average_penetration
+from programs.cost import count
 from programs.function import Function, Parameter, function
 from programs.program import evaluate
-from programs.trace import trace
+from programs.tracing.tracer import trace
 from shadefit.figures.style import COLOURS, KINDS, MARKERS
 from shadefit.figures.values import kind_of, quantities, tables_of
 

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 
 from coefficients.catalogue import form_of, load
 from fitting.cells import fit_cells
-from fitting.grid import light_directions, trapezoid_grid
 from fitting.paper import RationalPs
+from fitting.points.grids import light_directions, trapezoid_grid
 from integrals import PS, R
 from shadefit.figures.maps import error_maps, surfaces
 from shadefit.figures.style import ERRORS

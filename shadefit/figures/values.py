@@ -9,7 +9,7 @@ from coefficients.shaders import Shader, shader
 from fitting import exact_values
 from integrals import INTEGRALS, Integral
 from programs.program import evaluate
-from programs.trace import trace
+from programs.tracing.tracer import trace
 
 _FOLDERS = {"published": "published", "best": "best", "": "refitted", "refit": "refitted"}
 

@@ -1,0 +1,1 @@
+"""Where forms are fitted, checked and judged."""

@@ -1,0 +1,1 @@
+"""Proofs about a fitted form on its whole domain."""

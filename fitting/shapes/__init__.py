@@ -1,0 +1,1 @@
+"""Generic shapes of forms."""

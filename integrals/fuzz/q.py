@@ -1,0 +1,69 @@
+"""Q, the cosine-weighted average of P_p, the chance of reaching the base without scattering.
+
+Q(d) = (1/π) ∫_Ω exp(−d/(u·n)) (u·n) dω_u (Eq. 4) = 2 E₃(d).
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from integrals.fuzz.g import DENSITY
+from integrals.monte_carlo import Sequence, mean_estimate, unit_points
+from integrals.reference import Estimate, Integral, leg
+from integrals.rules.interval import checked_steps, exponential_decay
+from integrals.special.exponential import e3
+from shading import penetration
+from shading.types import Scalar
+
+AXES = (DENSITY,)
+
+
+def average_penetration(density: Scalar) -> Array:
+    """Give Q = 2 E₃(d) for d ≥ 0."""
+    return 2 * e3(density)
+
+
+@leg(*AXES)
+def closed_form(density) -> Estimate:
+    """Evaluate 2 E₃(d)."""
+    return Estimate(average_penetration(density), jnp.full((), 16 * np.finfo(float).eps))
+
+
+@leg(*AXES)
+def quadrature(density, *, step: float = 1 / 32) -> Estimate:
+    """Integrate P_p over the hemisphere by the trapezoid rule of `step`.
+
+    The azimuth integrates to 2π; with u·n = e^(−s) the layer at u·n ~ d has unit width in s.
+    """
+
+    def rule(step: float) -> Array:
+        s, weights = exponential_decay(step)
+        cosines = jnp.exp(-s)
+        return 2 * jnp.sum(
+            weights * cosines**2 * jax.vmap(penetration, (0, None))(cosines, density)
+        )
+
+    return checked_steps(rule, step, 1e-14)
+
+
+@leg(*AXES)
+def monte_carlo(
+    density, *, samples: int = 1 << 16, sequence: Sequence = "random", seed: int = 0
+) -> Estimate:
+    """Average P_p over lights drawn with density (u·n)/π."""
+    cosines = jnp.sqrt(1 - unit_points(samples, 1, sequence, seed)[..., 0])
+    values = jax.vmap(jax.vmap(penetration, (0, None)), (0, None))(cosines, density)
+    return mean_estimate(values)
+
+
+Q = Integral(
+    name="q",
+    symbol="Q",
+    meaning="cosine-weighted average of the chance to penetrate the layer unscattered",
+    definition="(1/π) ∫_Ω exp(−d/(u·n)) (u·n) dω_u",
+    axes=AXES,
+    closed_form=closed_form,
+    quadrature=quadrature,
+    monte_carlo=monte_carlo,
+)

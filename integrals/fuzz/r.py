@@ -1,0 +1,71 @@
+"""R, the cosine-weighted average of P_s over the hemisphere of lights.
+
+R(θf, α) = (1/π) ∫_Ω P_s(u) (u·n) dω_u (Eq. 5).
+"""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from integrals.fuzz.ps import ALPHA, THETA_F, fraction_at
+from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
+from integrals.reference import Estimate, Integral, leg
+from integrals.rules.interval import checked_rule, gauss_legendre
+from shading import direction, fiber_direction, fiber_root, reflect, visible_normal
+
+AXES = (ALPHA, THETA_F)
+
+
+def average_over_lights(fraction, nodes: int) -> Array:
+    """Give (1/π) ∫_Ω fraction(θu, φ) (u·n) dω_u of a function that is even in φ.
+
+    Gauss–Legendre in cos θu, midpoints in φ on [0, π]: `nodes` of each.
+    """
+    cosines, weights = gauss_legendre(nodes, 0.0, 1.0)
+    azimuths = (np.arange(nodes) + 0.5) * np.pi / nodes
+    over_azimuth = jax.vmap(fraction, (None, 0))
+    values = jax.vmap(over_azimuth, (0, None))(np.arccos(cosines), azimuths)
+    return 2 * jnp.sum((weights * cosines)[:, None] * values) / nodes
+
+
+@leg(*AXES)
+def quadrature(alpha, theta_f, *, nodes: int = 96) -> Estimate:
+    """Integrate the closed form of P_s by `nodes`² points; the error is against (¾ nodes)²."""
+
+    def fraction(theta_u, phi):
+        return fraction_at(alpha, theta_f, theta_u, phi)
+
+    # The second term is for what P_s does within an angle α of the fibre when the nodes miss it.
+    rounding = 4 * np.finfo(float).eps / alpha + 6 * alpha**2 * jnp.exp(-4 * nodes * alpha)
+    return checked_rule(lambda count: average_over_lights(fraction, count), nodes, rounding)
+
+
+@leg(*AXES)
+def monte_carlo(
+    alpha, theta_f, *, samples: int = 1 << 16, sequence: Sequence = "random", seed: int = 0
+) -> Estimate:
+    """Draw lights with density (u·n)/π, reflect each off a visible normal, and count.
+
+    Not differentiable.
+    """
+    root = fiber_root(fiber_direction(theta_f), alpha)
+
+    def goes_down(point):
+        light = direction(jnp.arcsin(jnp.sqrt(point[0])), 2 * jnp.pi * point[1])
+        normal = visible_normal(root, light, point[2:])
+        return indicator(-reflect(light, normal)[2])
+
+    points = unit_points(samples, 4, sequence, seed)
+    return mean_estimate(jax.vmap(jax.vmap(goes_down))(points))
+
+
+R = Integral(
+    name="r",
+    symbol="R",
+    meaning="cosine-weighted average of P_s over the hemisphere of lights",
+    definition="(1/π) ∫_Ω P_s(u) (u·n) dω_u",
+    axes=AXES,
+    quadrature=quadrature,
+    monte_carlo=monte_carlo,
+)

@@ -1,0 +1,1 @@
+"""Special functions that the closed forms need and JAX does not have."""

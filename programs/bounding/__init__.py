@@ -1,0 +1,1 @@
+"""Proven bounds of a program over whole boxes: interval arithmetic, branch and bound."""

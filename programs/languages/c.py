@@ -1,0 +1,33 @@
+"""C, from C99 on; half precision is the _Float16 of gcc and clang."""
+
+from programs.languages.c_family import (
+    C_WORDS,
+    COMPARED,
+    MATH,
+    SELECTION,
+    reciprocal_root,
+    suffixed,
+)
+from programs.languages.language import Binding, Spelling, Target, spell
+
+_FLOAT = spell(suffixed(MATH, "f") | reciprocal_root("1.0f", "sqrtf") | SELECTION | COMPARED)
+_DOUBLE = spell(MATH | reciprocal_root("1.0", "sqrt") | SELECTION | COMPARED)
+
+# There are no half functions: compute in float and round.
+_HALF = {
+    operation: Spelling(f"(_Float16)({how.template})", Binding.SIGN)
+    for operation, how in _FLOAT.items()
+} | spell(SELECTION | COMPARED)
+
+TARGET = Target(
+    key="c",
+    name="C",
+    extension="c",
+    types={"half": "_Float16", "float": "float", "double": "double"},
+    literals={"half": "(_Float16){}f", "float": "{}f", "double": "{}"},
+    functions={"half": _HALF, "float": _FLOAT, "double": _DOUBLE},
+    reserved=C_WORDS,
+    prologue={precision: ("#include <math.h>",) for precision in ("half", "float", "double")},
+    boolean="int",
+    array_in="const {type} {name}[{size}]",
+)

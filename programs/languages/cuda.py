@@ -1,0 +1,30 @@
+"""CUDA C++, for the device and for the host."""
+
+from programs.languages.c_family import CPP_WORDS, MATH, SELECTION, reciprocal_root, suffixed
+from programs.languages.language import Target, spell, words
+
+# On a device the minimum is one instruction, and fminf is its name on both sides.
+_MATH = MATH | {"min": "fmin", "max": "fmax"}
+
+TARGET = Target(
+    key="cuda",
+    name="CUDA",
+    extension="cu",
+    types={"float": "float", "double": "double"},
+    literals={"float": "{}f", "double": "{}"},
+    functions={
+        "float": spell(suffixed(_MATH, "f") | reciprocal_root("1.0f", "sqrtf") | SELECTION),
+        "double": spell(_MATH | reciprocal_root("1.0", "sqrt") | SELECTION),
+    },
+    reserved=CPP_WORDS
+    | words(
+        "__host__ __device__ __global__ __shared__ __constant__ threadIdx blockIdx blockDim",
+        "gridDim warpSize half float2 float3 float4 double2 double3 double4 dim3",
+    ),
+    prologue={precision: ("#include <math.h>",) for precision in ("float", "double")},
+    array_in="const {type} (&{name})[{size}]",
+    array_out="{type} (&{name})[{size}]",
+    head_one="__host__ __device__ {type} {function}({arguments})",
+    head_many="__host__ __device__ void {function}({arguments})",
+    table_opening="const {type} {name}[{size}] = {{",
+)

@@ -1,0 +1,37 @@
+"""HLSL, shader model 6 (half needs -enable-16bit-types to be 16 bits wide)."""
+
+from programs.languages.c_family import C_WORDS, SELECTION, SHADING
+from programs.languages.language import Target, spell, words
+
+FUNCTIONS = spell(SHADING | {"atan2": "atan2", "rsqrt": "rsqrt"} | SELECTION)
+
+# The intrinsic functions stop at float; of doubles there is arithmetic and comparison.
+DOUBLE = {operation: FUNCTIONS[operation] for operation in ("abs", "min", "max", "select")}
+
+WORDS = C_WORDS | words(
+    "AppendStructuredBuffer BlendState Buffer ByteAddressBuffer cbuffer centroid class",
+    "column_major compile ComputeShader ConsumeStructuredBuffer DepthStencilState discard",
+    "DomainShader dword export fxgroup GeometryShader groupshared half Hullshader in inout",
+    "InputPatch interface line lineadj linear LineStream matrix min10float min12int min16float",
+    "min16int min16uint",
+    "namespace nointerpolation noperspective NULL out OutputPatch packoffset pass pixelfragment",
+    "PixelShader point PointStream precise RasterizerState RenderTargetView row_major RWBuffer",
+    "RWByteAddressBuffer RWStructuredBuffer sample sampler SamplerState snorm stateblock string",
+    "StructuredBuffer tbuffer technique texture Texture1D Texture2D Texture3D TextureCube triangle",
+    "triangleadj TriangleStream uint uniform unorm unsigned vector vertexfragment VertexShader",
+    "float2 float3 float4 half2 half3 half4 double2 double3 double4 int2 int3 int4 template this",
+    "float16_t float32_t float64_t typename using virtual operator",
+)
+
+TARGET = Target(
+    key="hlsl",
+    name="HLSL",
+    extension="hlsl",
+    types={"half": "half", "float": "float", "double": "double"},
+    literals={"half": "{}h", "float": "{}f", "double": "{}L"},
+    functions={"half": FUNCTIONS, "float": FUNCTIONS, "double": DOUBLE},
+    reserved=WORDS,
+    prologue={precision: () for precision in ("half", "float", "double")},
+    array_in="in {type} {name}[{size}]",
+    array_out="out {type} {name}[{size}]",
+)

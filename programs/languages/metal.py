@@ -1,0 +1,32 @@
+"""The Metal shading language."""
+
+from programs.languages.c_family import CPP_WORDS, SELECTION, SHADING
+from programs.languages.language import Target, spell, words
+
+_FUNCTIONS = spell(
+    {
+        operation: f"metal::{name}"
+        for operation, name in (SHADING | {"atan2": "atan2", "rsqrt": "rsqrt"}).items()
+    }
+    | SELECTION
+)
+
+TARGET = Target(
+    key="metal",
+    name="Metal",
+    extension="metal",
+    types={"half": "half", "float": "float"},
+    literals={"half": "{}h", "float": "{}f"},
+    functions={"half": _FUNCTIONS, "float": _FUNCTIONS},
+    reserved=CPP_WORDS
+    | words(
+        "device constant thread threadgroup threadgroup_imageblock kernel vertex fragment metal",
+        "half half2 half3 half4 float2 float3 float4 uint uchar ushort ulong sampler texture2d",
+        "array vec access ray_data object_data",
+    ),
+    prologue={precision: ("#include <metal_stdlib>",) for precision in ("half", "float")},
+    array_in="thread const {type} (&{name})[{size}]",
+    array_out="thread {type} (&{name})[{size}]",
+    # A function's static constants have no address space of their own.
+    table_opening="const {type} {name}[{size}] = {{",
+)

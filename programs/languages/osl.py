@@ -1,0 +1,30 @@
+"""The Open Shading Language: floats only, and no constants but by good will."""
+
+from programs.languages.c_family import SELECTION, SHADING
+from programs.languages.language import Target, spell, words
+
+TARGET = Target(
+    key="osl",
+    name="OSL",
+    extension="osl",
+    types={"float": "float"},
+    literals={"float": "{}"},
+    functions={
+        "float": spell(
+            SHADING | {"rsqrt": "inversesqrt", "atan2": "atan2", "expm1": "expm1"} | SELECTION
+        )
+    },
+    reserved=words(
+        "and break closure color continue displacement do else emit float for if illuminance",
+        "illuminate int matrix normal not or output point public return string struct surface",
+        "shader vector void volume while bool case catch char class const delete default double",
+        "enum extern false friend goto inline long new operator private protected short signed",
+        "sizeof static switch template this throw true try typedef uniform union unsigned varying",
+        "virtual P I N Ng u v dPdu dPdv Ps time dtime dPdtime Ci",
+    ),
+    prologue={"float": ()},
+    boolean="int",
+    array_out="output {type} {name}[{size}]",
+    local="{type} {name} = {value};",
+    table_opening="{type} {name}[{size}] = {{",
+)

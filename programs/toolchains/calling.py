@@ -1,0 +1,44 @@
+"""The statements that call a function for one row of numbers, in languages that look like C."""
+
+from collections.abc import Callable
+from textwrap import indent
+
+from programs.function import Function
+from programs.toolchains.toolchain import result_count
+
+
+def call(
+    function: Function,
+    real: str,
+    number: Callable[[int], str],
+    store: Callable[[int], str] | None = None,
+    *,
+    depth: int = 4,
+    scalar: str = "{real} {name};",
+    array: str = "{real} {name}[{size}];",
+    given: str = "shadefit_value",
+) -> str:
+    """Write what takes a row apart into arguments, calls with them, and stores the results.
+
+    Arguments: `function`; `real`, the number type's spelling; `number`, the expression of a column
+    of the row; `store`, the statement that stores a result, which is `shadefit_value[cell]` (None:
+    they are left there); `depth`, spaces of indentation; `scalar` and `array`, how variables are
+    declared; `given`, how the array of results is given to the function. Returns lines of code.
+    """
+    lines, arguments, column = [], [], 0
+    for index, parameter in enumerate(function.parameters):
+        name, size = f"shadefit_{index}", parameter.size
+        declared = scalar if size is None else array
+        lines.append(declared.format(real=real, name=name, size=size))
+        places = [name] if size is None else [f"{name}[{cell}]" for cell in range(size)]
+        lines += [f"{place} = {number(cell)};" for cell, place in enumerate(places, column)]
+        arguments.append(name)
+        column += len(places)
+    count = result_count(function)
+    lines.append(array.format(real=real, name="shadefit_value", size=count))
+    if function.result is None:
+        lines.append(f"shadefit_value[0] = {function.name}({', '.join(arguments)});")
+    else:
+        lines.append(f"{function.name}({', '.join([*arguments, given])});")
+    lines += [] if store is None else [store(cell) for cell in range(count)]
+    return indent("\n".join(lines), " " * depth)

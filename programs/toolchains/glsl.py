@@ -1,0 +1,64 @@
+"""GLSL with glslang to SPIR-V, run as a compute shader on the Vulkan device."""
+
+import re
+
+import numpy as np
+
+from programs.function import Function
+from programs.toolchains import device
+from programs.toolchains.process import absent, execute, first_line, workspace
+from programs.toolchains.shader import STORED, main_body
+from programs.toolchains.toolchain import refusal
+
+NOTE = (
+    "GLSL 4.50; the device's inverse trigonometric functions may be off by 4e-4, its exp, log and "
+    "pow by several units in the last place; GLSL has no double exp, log, pow or trigonometry."
+)
+
+_REAL = {"half": "float16_t", "float": "float", "double": "double"}
+_EXTENSION = "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require"
+
+
+def absence(precision: str) -> str | None:
+    """As `Toolchain.absence`."""
+    return absent("glslangValidator", "glslang-tools") or device.absence(precision)
+
+
+def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
+    """As `Toolchain.evaluate`."""
+    with workspace() as folder:
+        (folder / "code.comp").write_text(
+            compute_shader(source, function, precision), encoding="utf-8"
+        )
+        execute(
+            ["glslangValidator", "-V", "--target-env", "vulkan1.2", "code.comp", "-o", "code.spv"],
+            failure=refusal("GLSL", function, precision),
+            folder=folder,
+        )
+        code = (folder / "code.spv").read_bytes()
+    return device.evaluate("GLSL", code, function, inputs, precision)
+
+
+def compute_shader(source: str, function: Function, precision: str) -> str:
+    """Write the compute shader around a function; a #version of its own gives way to ours."""
+    real, stored = _REAL[precision], STORED[precision]
+    body = main_body(function, real, stored, "shadefit_in.row", "shadefit_out.row")
+    extension = f"{_EXTENSION}\n" if precision == "half" else ""
+    text = re.sub(r"^[ \t]*#version\b[^\n]*", "", source, count=1, flags=re.MULTILINE)
+    return f"""#version 450
+{extension}#line 1
+{text}
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer ShadefitIn {{ {stored} row[]; }} shadefit_in;
+layout(std430, binding = 1) writeonly buffer ShadefitOut {{ {stored} row[]; }} shadefit_out;
+void main() {{
+    uint shadefit_k = gl_GlobalInvocationID.x;
+{body}
+}}
+"""
+
+
+def versions() -> str:
+    """As `Toolchain.versions`."""
+    compiler = first_line("glslangValidator", "--version").removeprefix("Glslang Version: ")
+    return f"glslang {compiler}, {device.versions()}"

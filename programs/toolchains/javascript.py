@@ -1,0 +1,71 @@
+"""JavaScript with Node."""
+
+import json
+
+import numpy as np
+
+from programs.function import Function
+from programs.toolchains.native import values_from
+from programs.toolchains.process import absent, execute, first_line, workspace
+from programs.toolchains.toolchain import breakdown, refusal, result_count
+
+NOTE = "JavaScript computes in double only."
+
+_MAIN = """
+const shadefitNode = require("node:fs");
+const shadefitWidths = {widths};
+const shadefitCount = {count};
+const shadefitBytes = shadefitNode.readFileSync("inputs");
+const shadefitRows = new Float64Array(
+    shadefitBytes.buffer.slice(
+        shadefitBytes.byteOffset, shadefitBytes.byteOffset + shadefitBytes.length));
+const shadefitWidth = shadefitWidths.reduce((sum, width) => sum + (width || 1), 0);
+const shadefitTotal = shadefitRows.length / shadefitWidth;
+const shadefitOut = new Float64Array(shadefitTotal * shadefitCount);
+for (let row = 0; row < shadefitTotal; ++row) {{
+    let at = row * shadefitWidth;
+    const call = shadefitWidths.map((width) => {{
+        const from = at;
+        at += width || 1;
+        return width ? Array.from(shadefitRows.subarray(from, at)) : shadefitRows[from];
+    }});
+    const value = {name}(...call);
+    const values = Array.isArray(value) ? value : [value];
+    if (values.length !== shadefitCount || values.some((one) => typeof one !== "number"))
+        throw new TypeError("{name} gave " + JSON.stringify(value));
+    shadefitOut.set(values, row * shadefitCount);
+}}
+shadefitNode.writeFileSync("values", new Uint8Array(shadefitOut.buffer));
+"""
+
+
+def absence(precision: str) -> str | None:
+    """As `Toolchain.absence`."""
+    if precision != "double":
+        return "JavaScript computes in double only"
+    return absent("node", "nodejs")
+
+
+def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
+    """As `Toolchain.evaluate`."""
+    widths = json.dumps([parameter.size or 0 for parameter in function.parameters])
+    main = _MAIN.format(widths=widths, count=result_count(function), name=function.name)
+    failure = breakdown("JavaScript", function, precision)
+    with workspace() as folder:
+        (folder / "code.js").write_text(source, encoding="utf-8")
+        execute(
+            ["node", "--check", "code.js"],
+            failure=refusal("JavaScript", function, precision),
+            folder=folder,
+        )
+        # One file: a function declared in a script is not seen from another module.
+        (folder / "main.js").write_text(source + main, encoding="utf-8")
+        (folder / "inputs").write_bytes(inputs.tobytes())
+        execute(["node", "main.js"], failure=failure, folder=folder)
+        data = (folder / "values").read_bytes()
+    return values_from(data, len(inputs), function, failure)
+
+
+def versions() -> str:
+    """As `Toolchain.versions`."""
+    return f"Node {first_line('node', '--version')}"

@@ -1,0 +1,54 @@
+"""Python with NumPy: the code is run in a namespace of its own, in this process."""
+
+import sys
+from typing import Any
+
+import numpy as np
+
+from programs.function import Function, group_inputs
+from programs.toolchains.precision import number_type
+from programs.toolchains.process import ToolchainError
+from programs.toolchains.toolchain import breakdown, refusal
+
+NOTE = "NumPy rounds every operation to the type of its arrays; whole arrays at a time."
+
+
+def absence(precision: str) -> str | None:
+    """As `Toolchain.absence`: NumPy is always here, in every precision."""
+    return None
+
+
+def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
+    """As `Toolchain.evaluate`; values of another type than the precision's are refused."""
+    namespace: dict[str, Any] = {"__name__": "shadefit_exported"}
+    kind = number_type(precision)
+    arguments = group_inputs(function, [column.astype(kind) for column in inputs.T])
+    try:
+        exec(compile(source, f"<{function.name}>", "exec"), namespace)
+    except Exception as error:
+        log = f"{type(error).__name__}: {error}"
+        raise ToolchainError(refusal("Python", function, precision), log) from error
+    called = namespace.get(function.name)
+    if not callable(called):
+        log = f"the code defines no function {function.name}"
+        raise ToolchainError(refusal("Python", function, precision), log)
+    failure = breakdown("Python", function, precision)
+    try:
+        # Overflow shows in the values; as warnings it would only be said twice.
+        with np.errstate(all="ignore"):
+            given = called(*arguments)
+        columns = [given] if function.result is None else list(given)
+    except Exception as error:
+        raise ToolchainError(failure, f"{type(error).__name__}: {error}") from error
+    for column in columns:
+        if np.asarray(column).dtype != kind:
+            raise ToolchainError(
+                failure, f"values have type {np.asarray(column).dtype}, not {np.dtype(kind)}"
+            )
+    rows = len(inputs)
+    return np.stack([np.broadcast_to(column, (rows,)) for column in columns], 1).astype(np.float64)
+
+
+def versions() -> str:
+    """As `Toolchain.versions`."""
+    return f"Python {sys.version.split()[0]}, NumPy {np.__version__}"

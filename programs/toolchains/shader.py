@@ -1,0 +1,40 @@
+"""A compute shader around a function, in the languages that look like C."""
+
+from programs.function import Function, input_names
+from programs.toolchains.calling import call
+from programs.toolchains.toolchain import result_count
+
+# Halves travel as floats, which hold them exactly, so that no 16-bit storage is needed.
+STORED = {"half": "float", "float": "float", "double": "double"}
+
+
+def main_body(function: Function, real: str, stored: str, inputs: str, outputs: str) -> str:
+    """Write the statements that call a function for row `shadefit_k`.
+
+    Arguments: `function`; `real` and `stored`, the spellings of the number type computed in and
+    of the one in the buffers; `inputs` and `outputs`, the expressions that name the buffers.
+    """
+    count, width = result_count(function), len(input_names(function))
+    return call(
+        function,
+        real,
+        lambda cell: f"{real}({inputs}[{width}u * shadefit_k + {cell}u])",
+        lambda cell: (
+            f"{outputs}[{count}u * shadefit_k + {cell}u] = {stored}(shadefit_value[{cell}]);"
+        ),
+    )
+
+
+def hlsl_shader(source: str, function: Function, precision: str) -> str:
+    """Write the compute shader around a function in HLSL, which Slang reads as well."""
+    stored = STORED[precision]
+    body = main_body(function, precision, stored, "shadefit_in", "shadefit_out")
+    return f"""{source}
+[[vk::binding(0, 0)]] StructuredBuffer<{stored}> shadefit_in;
+[[vk::binding(1, 0)]] RWStructuredBuffer<{stored}> shadefit_out;
+[numthreads(64, 1, 1)]
+void main(uint3 shadefit_id : SV_DispatchThreadID) {{
+    uint shadefit_k = shadefit_id.x;
+{body}
+}}
+"""

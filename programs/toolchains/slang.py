@@ -1,0 +1,55 @@
+"""Slang with slangc to SPIR-V, run as a compute shader on the Vulkan device."""
+
+from pathlib import Path
+
+import numpy as np
+
+from programs.function import Function
+from programs.toolchains import device
+from programs.toolchains.process import execute, first_line, packaged, program, workspace
+from programs.toolchains.shader import hlsl_shader
+from programs.toolchains.toolchain import refusal
+
+NOTE = (
+    "slangc -O0 to SPIR-V; the device's inverse trigonometric functions may be off by 4e-4, its "
+    "exp, log and pow by several units in the last place; no double exp, log, pow or trigonometry."
+)
+
+
+def absence(precision: str) -> str | None:
+    """As `Toolchain.absence`."""
+    if _compiler() is None:
+        return (
+            "slangc is not on PATH nor in the environment (PyPI: slangtorch, without what it needs)"
+        )
+    return device.absence(precision)
+
+
+def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
+    """As `Toolchain.evaluate`."""
+    compiler = _compiler()
+    assert compiler is not None
+    with workspace() as folder:
+        (folder / "code.slang").write_text(
+            hlsl_shader(source, function, precision), encoding="utf-8"
+        )
+        # -O0 because the optimiser of SPIR-V is a library that the package does not carry.
+        flags = ("-target", "spirv", "-O0", "-entry", "main", "-stage", "compute")
+        execute(
+            [compiler, "code.slang", *flags, "-o", "code.spv"],
+            failure=refusal("Slang", function, precision),
+            folder=folder,
+        )
+        code = (folder / "code.spv").read_bytes()
+    return device.evaluate("Slang", code, function, inputs, precision)
+
+
+def versions() -> str:
+    """As `Toolchain.versions`."""
+    compiler = _compiler()
+    name = "no slangc" if compiler is None else f"slangc {first_line(compiler, '-v')}"
+    return f"{name}, {device.versions()}"
+
+
+def _compiler() -> Path | None:
+    return program("slangc") or packaged("slangtorch", "bin/slangc")

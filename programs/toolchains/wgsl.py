@@ -1,0 +1,61 @@
+"""WGSL with naga, wgpu's compiler, run as a compute shader on the Vulkan device."""
+
+import numpy as np
+
+from programs.function import Function, input_names
+from programs.toolchains import device
+from programs.toolchains.calling import call
+from programs.toolchains.toolchain import result_count
+
+NOTE = (
+    "the device's inverse trigonometric functions may be off by 4e-4, its exp, log and pow by "
+    "several units in the last place."
+)
+
+_REAL = {"half": "f16", "float": "f32"}
+
+
+def absence(precision: str) -> str | None:
+    """As `Toolchain.absence`."""
+    if precision == "double":
+        return "WGSL has no double precision"
+    return device.absence(precision)
+
+
+def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
+    """As `Toolchain.evaluate`."""
+    code = compute_shader(source, function, precision)
+    return device.evaluate("WGSL", code, function, inputs, precision)
+
+
+def compute_shader(source: str, function: Function, precision: str) -> str:
+    """Write the compute shader around a function."""
+    real = _REAL[precision]
+    count, width = result_count(function), len(input_names(function))
+    body = call(
+        function,
+        real,
+        lambda cell: f"{real}(shadefit_in[{width}u * shadefit_k + {cell}u])",
+        lambda cell: (
+            f"shadefit_out[{count}u * shadefit_k + {cell}u] = f32(shadefit_value[{cell}]);"
+        ),
+        scalar="var {name}: {real};",
+        array="var {name}: array<{real}, {size}>;",
+        given="&shadefit_value",
+    )
+    # Directives come first, and may be said twice; on the first line, they move no other.
+    head = "enable f16; " if precision == "half" else ""
+    return f"""{head}{source}
+@group(0) @binding(0) var<storage, read> shadefit_in: array<f32>;
+@group(0) @binding(1) var<storage, read_write> shadefit_out: array<f32>;
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) shadefit_id: vec3<u32>) {{
+    let shadefit_k = shadefit_id.x;
+{body}
+}}
+"""
+
+
+def versions() -> str:
+    """As `Toolchain.versions`."""
+    return f"naga, {device.versions()}"

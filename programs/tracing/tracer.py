@@ -1,0 +1,174 @@
+"""From a JAX function to a straight-line program, by way of its jaxpr."""
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from types import CodeType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.extend.core import ClosedJaxpr, Jaxpr, JaxprEqn, Literal
+
+from programs.function import Function, group_inputs, input_names
+from programs.program import Program
+from programs.tracing.authorship import Place, assigned_name, is_jax, places
+from programs.tracing.builder import Builder
+from programs.tracing.primitives import CALLS, allowed, apply_primitive
+
+# More than any target takes: it stops a loop that would grow without end.
+LIMIT = 50_000
+
+
+def trace(function: Function, limit: int = LIMIT) -> Program:
+    """Write a function as a straight-line program.
+
+    Calls (jit, custom derivatives, checkpoints) are inlined and scans of fixed length unrolled;
+    small arrays are taken apart into scalars; constants are folded in float64 and equal
+    subexpressions shared.
+
+    Arguments: `function`, whose `call` is a JAX function of scalars; `limit`, the longest program
+    that is worth the while. Returns the program; its inputs are named as `input_names` says. Raises
+    ValueError when float64 is off, when the results are not what `function.result` says, when an
+    operation cannot be written as shader code, or when there are more than `limit` of them.
+    """
+    if jnp.result_type(float) != np.float64:
+        raise ValueError("jax_enable_x64 is False; allowed: True, set before a function is traced")
+    names = input_names(function)
+    scalar = jax.ShapeDtypeStruct((), np.float64)
+
+    def flat(*values):
+        return function.call(*group_inputs(function, values))
+
+    def is_flat(code: CodeType) -> bool:
+        return code is flat.__code__
+
+    closed, shapes = jax.make_jaxpr(flat, return_shape=True)(*[scalar] * len(names))
+    _require_results(function, shapes)
+    builder = Builder(names, limit)
+    inputs = [np.array(number, dtype=object) for number in range(len(names))]
+    outputs = _inline(function.name, builder, closed, inputs, is_flat)
+    return builder.finish(function.name, [_scalar(output) for output in outputs])
+
+
+def _inline(
+    name: str,
+    builder: Builder,
+    closed: ClosedJaxpr,
+    inputs: Sequence[Any],
+    within: Callable[[CodeType], bool] | None,
+) -> list[Any]:
+    """Run a jaxpr on arrays: numeric ones are constants, object ones hold operands.
+
+    `within` tells the code that the jaxpr was made of, or is None where its names mean nothing.
+    """
+    jaxpr: Jaxpr = closed.jaxpr
+    values: dict[Any, Any] = dict(zip(jaxpr.constvars, map(np.asarray, closed.consts), strict=True))
+    values.update(zip(jaxpr.invars, inputs, strict=True))
+    hints = _hints(jaxpr.eqns, within)
+    for equation, hint in zip(jaxpr.eqns, hints, strict=True):
+        operands = [
+            np.asarray(v.val) if isinstance(v, Literal) else values[v] for v in equation.invars
+        ]
+        results = _run(name, builder, equation, operands)
+        if hint is not None and len(results) == 1:
+            _name_all(builder, results[0], hint)
+        values.update(zip(equation.outvars, results, strict=True))
+    return [np.asarray(v.val) if isinstance(v, Literal) else values[v] for v in jaxpr.outvars]
+
+
+def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -> list[Any]:
+    primitive = equation.primitive.name
+    if primitive in CALLS:
+        inner = equation.params[CALLS[primitive]]
+        closed = inner if isinstance(inner, ClosedJaxpr) else ClosedJaxpr(inner, ())
+        # Custom derivative rules carry their own jaxpr: the function itself has a source file.
+        return _inline(name, builder, closed, operands, _authored(closed))
+    if primitive == "scan":
+        return _unroll(name, builder, equation, operands)
+    if all(operand.dtype != object for operand in operands):
+        results = equation.primitive.bind(*operands, **equation.params)
+        results = results if equation.primitive.multiple_results else [results]
+        return [np.asarray(result) for result in results]
+    try:
+        return apply_primitive(builder, equation, operands)
+    except KeyError:
+        raise ValueError(
+            f"{primitive!r} in {name} cannot be written as shader code; allowed: {allowed()}"
+        ) from None
+    except ValueError as error:
+        raise ValueError(f"{primitive!r} in {name}: {error}") from error
+
+
+def _unroll(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -> list[Any]:
+    params = equation.params
+    fixed, carried = params["num_consts"], params["num_consts"] + params["num_carry"]
+    constants, carry, series = operands[:fixed], operands[fixed:carried], operands[carried:]
+    gathered: list[list[Any]] = []
+    order = range(params["length"])
+    for index in reversed(order) if params["reverse"] else order:
+        arguments = [*constants, *carry, *(np.asarray(each[index]) for each in series)]
+        results = _inline(name, builder, params["jaxpr"], arguments, None)
+        carry, row = results[: params["num_carry"]], results[params["num_carry"] :]
+        gathered.append(row)
+    if params["reverse"]:
+        gathered.reverse()
+    return [*carry, *(np.stack(column) for column in zip(*gathered, strict=True))]
+
+
+def _authored(closed: ClosedJaxpr) -> Callable[[CodeType], bool] | None:
+    # The equations of JAX's own jitted functions remember whoever called them first.
+    info = closed.jaxpr.debug_info
+    file, line = getattr(info, "func_filename", None), getattr(info, "func_lineno", None)
+    if file is None or is_jax(file):
+        return None
+    return lambda code: (code.co_filename, code.co_firstlineno) == (file, line)
+
+
+def _hints(
+    equations: Sequence[JaxprEqn], within: Callable[[CodeType], bool] | None
+) -> list[str | None]:
+    if within is None:
+        return [None] * len(equations)
+    stacks = [places(equation.source_info, within) for equation in equations]
+    return [_hint(here, following) for here, following in pairwise([*stacks, ()])]
+
+
+def _hint(here: tuple[Place, ...], following: tuple[Place, ...]) -> str | None:
+    # Several equations in a row may come from one expression (x = f(…) is all that f does): the
+    # last one has its value. The innermost name is the nearest to what the equation computes.
+    for level in range(len(here)):
+        outwards = len(here) - level
+        if here[level:] == following[len(following) - outwards :]:
+            return None
+        name = assigned_name(here[level])
+        if name is not None:
+            return name
+    return None
+
+
+def _name_all(builder: Builder, value: Any, hint: str) -> None:
+    if value.dtype != object:
+        return
+    for index, operand in enumerate(value.reshape(-1)):
+        builder.name(operand, hint if value.ndim == 0 else f"{hint}{index}")
+
+
+def _scalar(value: Any) -> Any:
+    item = value.item()
+    return item if value.dtype == object else float(item)
+
+
+def _require_results(function: Function, shapes: Any) -> None:
+    scalars = list(shapes) if isinstance(shapes, tuple | list) else [shapes]
+    single = function.result is None and not isinstance(shapes, tuple | list)
+    several = function.result == len(scalars) and isinstance(shapes, tuple | list)
+    if not (single or several):
+        expected = "a scalar" if function.result is None else f"a tuple of {function.result}"
+        raise ValueError(f"{function.name} gives {shapes!r}; allowed: {expected}")
+    for scalar in scalars:
+        if scalar.shape != () or scalar.dtype != np.float64:
+            raise ValueError(
+                f"{function.name} gives a result of shape {scalar.shape} and type {scalar.dtype}; "
+                "allowed: float64 scalars"
+            )

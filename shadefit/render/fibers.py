@@ -1,0 +1,81 @@
+"""Where the fibres of an image lean: all one way, crushed in patches, or as a map says."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+
+from shadefit.render.scenes import Hits
+
+EVEN, CRUSHED = "even", "crushed"
+# Waves that add up to the pattern of crushed velvet: how many, their lengths, the largest turn.
+_WAVES, _SHORTEST, _LONGEST, _TURN = 24, 0.3, 1.1, 1.3
+_MAX_BYTES = 64 << 20
+# Pixels an edge: a small file may say that it is of any size, and pixels take memory.
+_MAX_EDGE = 4096
+
+
+def azimuths(fibers: str, hits: Hits) -> np.ndarray:
+    """Give the turns (n,) of the fibres about the normal, in radians.
+
+    `fibers` is 'even', 'crushed', or the path of a PNG whose red and green, 0 … 1 for −1 … 1, are
+    the direction's components along the comb and across it. Raises ValueError for a file that is no
+    such image.
+    """
+    if fibers == EVEN:
+        return np.zeros(len(hits.position))
+    if fibers == CRUSHED:
+        return _crushed(hits.position)
+    return _from_map(_read(Path(fibers)), hits.uv)
+
+
+def _crushed(position: np.ndarray) -> np.ndarray:
+    """Turn fibres by a smooth pattern with plateaus, the same for every run."""
+    rng = np.random.default_rng(20200717)
+    ways = rng.normal(size=(_WAVES, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    lengths = np.exp(rng.uniform(np.log(_SHORTEST), np.log(_LONGEST), _WAVES))
+    phases, weights = rng.uniform(0, 2 * np.pi, _WAVES), lengths / np.sqrt(np.sum(lengths**2) / 2)
+    waves = np.sin(position @ (2 * np.pi * ways / lengths[:, None]).T + phases)
+    return _TURN * np.tanh(1.5 * (waves @ weights))
+
+
+def _read(path: Path) -> np.ndarray:
+    """Read red and green (height, width, 2) of a PNG, as −1 … 1."""
+    from matplotlib import image  # noqa: PLC0415
+    from PIL.PngImagePlugin import PngImageFile  # noqa: PLC0415
+
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            raise ValueError(f"fibers: {path} is larger than {_MAX_BYTES} bytes")
+        data = path.read_bytes()
+        # This reads no pixels yet.
+        width, height = PngImageFile(io.BytesIO(data)).size
+        if max(width, height) > _MAX_EDGE:
+            raise ValueError(
+                f"fibers: {path} has {width}×{height} pixels: allowed are {_MAX_EDGE} an edge"
+            )
+        pixels = image.imread(io.BytesIO(data), format="png")
+    except OSError as error:
+        reason = error.strerror or "it is no PNG image"
+        raise ValueError(
+            f"fibers: {path}: {reason}; allowed: {EVEN}, {CRUSHED}, or a PNG file"
+        ) from None
+    except SyntaxError:
+        raise ValueError(f"fibers: {path} is no PNG image") from None
+    if pixels.ndim != 3:
+        raise ValueError(f"fibers: {path} has no red and green channels")
+    return 2 * np.asarray(pixels[..., :2], float) - 1
+
+
+def _from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
+    """Interpolate directions, not angles: an angle has a seam."""
+    height, width, _ = pixels.shape
+    x, y = (uv[:, i] * n - 0.5 for i, n in ((0, width), (1, height)))
+    left, top = np.floor(x).astype(int), np.floor(y).astype(int)
+    total = np.zeros((len(x), 2))
+    for i in (0, 1):
+        for j in (0, 1):
+            weight = np.abs(1 - i - (x - left)) * np.abs(1 - j - (y - top))
+            total += weight[:, None] * pixels[(top + j) % height, (left + i) % width]
+    return np.arctan2(total[:, 1], total[:, 0])

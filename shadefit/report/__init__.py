@@ -1,0 +1,1 @@
+"""One HTML page: the tables, the figures and an explorer."""

@@ -1,0 +1,1 @@
+"""The fuzz BRDF of Ghost of Tsushima: layer, phase functions, base, ambient model."""

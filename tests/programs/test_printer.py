@@ -1,0 +1,478 @@
+import ctypes
+import re
+from dataclasses import replace
+from functools import reduce
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from programs.function import Function, Parameter
+from programs.languages import PRECISIONS, TARGETS, shortest, target
+from programs.printing.printer import write
+
+ALL = [(key, precision) for key in TARGETS for precision in TARGETS[key].types]
+RNG = np.random.default_rng(11)
+NUMERATOR, DENOMINATOR = RNG.normal(size=(2, 12))
+UNIT = (0.0, 1.0)
+
+
+def of_scalars(call, names="x", result=None, name="Example"):
+    parameters = tuple(Parameter(each, UNIT) for each in names.split())
+    return Function(name, "An example.", parameters, result, "results", call)
+
+
+def one_line(call, names="x", language="c", precision="double"):
+    """Give the expression that a function of one statement returns."""
+    source = write(of_scalars(call, names), language, precision)
+    return re.search(r"return (.*);", source)[1]
+
+
+def rational(alpha, thetaF, count=6):
+    """A rational form as the paper's: sines, powers, one clamp."""
+    alpha = jnp.clip(alpha, 0.15, 1.0)
+    b = 1.0 - alpha
+    g = jnp.cos(thetaF)
+    d = jnp.sin(thetaF)
+    terms = [b, g, d, b**2, g**2, b * g, b * d, b**3, g**3, d**3, b**2 * g, b * g**2]
+    results = []
+    for shift in range(count):
+        num = sum(float(p) * x for p, x in zip(np.roll(NUMERATOR, shift), terms, strict=True))
+        den = 20.0 + sum(float(q) * x for q, x in zip(DENOMINATOR, terms, strict=True))
+        results.append(0.5 + b * num / den)
+    return tuple(results)
+
+
+COEFFICIENTS = Function(
+    "CalcFuzzPsCoeffs",
+    "Parameters of the fit.",
+    (Parameter("alpha", (0.15, 1.0)), Parameter("thetaF", (0.1, 1.5707963267948966), "rad")),
+    6,
+    "c",
+    rational,
+)
+TWO = replace(COEFFICIENTS, result=2, call=lambda alpha, thetaF: rational(alpha, thetaF, 2))
+QUADRATIC = Function(
+    "FuzzPs",
+    "Value of the fit.",
+    (Parameter("c", (-1.0, 1.0), size=6), Parameter("NdotU", UNIT), Parameter("TdotU", UNIT)),
+    None,
+    "result",
+    lambda c, n, t: c[0] + c[1] * n + c[2] * t + c[3] * n * n + c[4] * n * t + c[5] * t * t,
+)
+
+GOLDEN = """\
+// Quantity: P_s, the fraction of light scattered towards the base layer
+// Equation: 1 - P_s = lambda^2 sqrt(lambda + c)
+
+#include <math.h>
+
+// An example.
+// alpha in [0, 1], thetaF in [0, 1].
+float Example(float alpha, float thetaF)
+{
+    const float beta = 1.0f - alpha;
+    const float beta2 = beta * beta;
+    const float num = 0.1f - beta * (0.25f + 0.30887988f * beta2 * beta);
+    const float sinThetaF = sinf(thetaF);
+    const float wave = sinThetaF * beta2 - cosf(thetaF);
+    return 0.5f + beta2 * num / (1.0f + wave + sqrtf(sinThetaF));
+}
+"""
+
+
+def test_printed_code_reads_as_it_was_written():
+    def call(alpha, thetaF):
+        beta = 1.0 - alpha
+        num = 0.1 - beta * (0.25 + 0.30887988209724426 * beta**2 * beta)
+        wave = jnp.sin(thetaF) * beta**2 - jnp.cos(thetaF)
+        return 0.5 + beta**2 * num / (1.0 + wave + jnp.sqrt(jnp.sin(thetaF)))
+
+    header = {
+        "Quantity": "P_s, the fraction of light scattered towards the base layer",
+        "Equation": "1 − P_s = λ² sqrt(λ + c)",
+    }
+    assert write(of_scalars(call, "alpha thetaF"), "c", header=header) == GOLDEN
+
+
+EXPRESSIONS = {
+    "a - (b - c)": lambda a, b, c: a - (b - c),
+    "a - b - c": lambda a, b, c: a - b - c,
+    "a + (b + c)": lambda a, b, c: a + (b + c),
+    "a * (b * c)": lambda a, b, c: a * (b * c),
+    "a / (b * c)": lambda a, b, c: a / (b * c),
+    "a / b / c": lambda a, b, c: a / b / c,
+    "a / (b / c)": lambda a, b, c: a / (b / c),
+    "a * b / c": lambda a, b, c: a * b / c,
+    "(a + b) * c": lambda a, b, c: (a + b) * c,
+    "a + b * c": lambda a, b, c: a + b * c,
+    "-(a + b)": lambda a, b, c: -(a + b),
+    "-a * b": lambda a, b, c: -a * b,
+    "a - 1.5": lambda a, b, c: a + -1.5,
+    "a + 1.5": lambda a, b, c: a - -1.5,
+    "a - 1.5 * b": lambda a, b, c: a + -1.5 * b,
+    "a + 1.5 * b * c": lambda a, b, c: a - -1.5 * b * c,
+    "a * (-1.5)": lambda a, b, c: a * -1.5,
+    "a / (-b)": lambda a, b, c: a / -b,
+    "a + b * (0.5 + c * (0.25 + a))": lambda a, b, c: a + b * (0.5 + c * (0.25 + a)),
+    "a > b ? c : 1.0": lambda a, b, c: jnp.where(a > b, c, 1.0),
+    "2.0 * (a > b ? c : 1.0)": lambda a, b, c: 2.0 * jnp.where(a > b, c, 1.0),
+    "a < b + c && (a > c || b > c) ? a : c": lambda a, b, c: jnp.where(
+        (a < b + c) & ((a > c) | (b > c)), a, c
+    ),
+    "a < b ? pow(c, a) : sqrt(a + b)": lambda a, b, c: jnp.where(
+        ~(a < b), jnp.sqrt(a + b), jnp.power(c, a)
+    ),
+}
+
+
+@pytest.mark.parametrize("expected", EXPRESSIONS)
+def test_parentheses_are_those_that_are_needed(expected):
+    assert one_line(EXPRESSIONS[expected], "a b c") == expected
+
+
+SIGNATURES = {
+    "c": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float c[6])",
+        "float FuzzPs(const float c[6], float NdotU, float TdotU)",
+    ),
+    "cpp": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
+    ),
+    "hlsl": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
+        "float FuzzPs(in float c[6], float NdotU, float TdotU)",
+    ),
+    "glsl": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
+        "float FuzzPs(in float c[6], float NdotU, float TdotU)",
+    ),
+    "slang": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
+        "float FuzzPs(in float c[6], float NdotU, float TdotU)",
+    ),
+    "metal": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, thread float (&c)[6])",
+        "float FuzzPs(thread const float (&c)[6], float NdotU, float TdotU)",
+    ),
+    "wgsl": (
+        "fn CalcFuzzPsCoeffs(alpha: f32, thetaF: f32, c: ptr<function, array<f32, 6>>)",
+        "fn FuzzPs(c: array<f32, 6>, NdotU: f32, TdotU: f32) -> f32",
+    ),
+    "osl": (
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, output float c[6])",
+        "float FuzzPs(float c[6], float NdotU, float TdotU)",
+    ),
+    "cuda": (
+        "__host__ __device__ void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "__host__ __device__ float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
+    ),
+    "python": ("def CalcFuzzPsCoeffs(alpha, thetaF):", "def FuzzPs(c, NdotU, TdotU):"),
+    "javascript": (
+        "function CalcFuzzPsCoeffs(alpha, thetaF)",
+        "function FuzzPs(c, NdotU, TdotU)",
+    ),
+}
+
+
+@pytest.mark.parametrize("key", TARGETS)
+def test_signatures_are_those_of_the_listings(key):
+    precision = "float" if "float" in TARGETS[key].types else "double"
+    lines = write([COEFFICIENTS, QUADRATIC], key, precision).splitlines()
+    for signature in SIGNATURES[key]:
+        assert lines.count(signature) == 1
+
+
+@pytest.mark.parametrize(("key", "precision"), ALL)
+@pytest.mark.parametrize("constants", ["inline", "table"])
+def test_every_language_writes_a_form_readably(key, precision, constants):
+    function = QUADRATIC if precision == "double" and key in NO_FUNCTIONS else TWO
+    header = {"Made": "word " * 60}
+    source = write(function, key, precision, constants=constants, header=header)
+    lines = source.splitlines()
+    assert max(map(len, lines)) <= 100
+    assert not any(line != line.rstrip() for line in lines)
+    if function is TWO:
+        assert len(re.findall(r"\bsin[f(]", source)) == 1
+        assert len(re.findall(r"\bcos[f(]", source)) == 1
+        # The square of b is made once, under its own name, and used by that name.
+        assert len(re.findall(r"\bb \* b\b", source)) == 1
+        assert len(re.findall(r"\bb2 = b \* b\b", source)) == 1
+        assert ("coefficients[3]" in source) == (constants == "table")
+
+
+NO_FUNCTIONS = ("hlsl", "glsl", "slang")
+
+
+DEEP = {
+    "Horner": lambda x: reduce(lambda rest, k: k + 0.123 + x * rest, np.arange(60.0), x),
+    "calls": lambda x: reduce(lambda inner, k: jnp.sin(inner) * x + k, np.arange(60.0), x),
+    "signs": lambda x: reduce(lambda inner, k: 1.0 - inner / (x - k), np.arange(60.0), x),
+    "selections": lambda x: reduce(
+        lambda inner, k: jnp.where(x > k, jnp.maximum(inner, k), x * inner), np.arange(40.0), x
+    ),
+}
+
+
+@pytest.mark.parametrize("key", ["c", "wgsl", "python"])
+@pytest.mark.parametrize("name", DEEP)
+def test_deep_expressions_stay_on_the_page(key, name):
+    source = write(of_scalars(DEEP[name]), key)
+    assert max(map(len, source.splitlines())) <= 100
+    if name == "Horner":
+        # Lines are filled: 60 short terms do not take a line each.
+        assert len(source.splitlines()) < 30
+
+
+def test_a_table_holds_each_fitted_constant_once():
+    source = write(COEFFICIENTS, "c", "double", constants="table")
+    (table,) = re.findall(r"coefficients\[(\d+)\] = \{(.*?)\};", source, re.DOTALL)
+    numbers = [float(text) for text in table[1].split(",")]
+    assert len(numbers) == int(table[0]) == len(set(numbers))
+    assert set(numbers) == set(NUMERATOR) | set(DENOMINATOR)
+    used = [int(i) for i in re.findall(r"coefficients\[(\d+)\]", source)][1:]
+    # In the order in which they are read.
+    assert list(dict.fromkeys(used)) == list(range(len(numbers)))
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+@given(value=st.floats(allow_nan=False, allow_infinity=False))
+def test_literals_read_back_as_the_same_number(precision, value):
+    dtype = PRECISIONS[precision]
+    with np.errstate(over="ignore"):
+        rounded = dtype(value)
+    if not np.isfinite(rounded):
+        with pytest.raises(ValueError, match=f"is no {precision}; allowed: at most"):
+            shortest(value, precision)
+        return
+    text = shortest(value, precision)
+    assert re.fullmatch(r"-?\d+\.\d+(e[-+]?\d+)?", text)
+    # A reader may round the decimal once, or to a double first.
+    assert dtype(float(text)) == rounded
+    if precision == "float":
+        assert np.float32(_strtof(text.encode(), None)) == rounded
+
+
+_strtof = ctypes.CDLL(None).strtof
+_strtof.argtypes, _strtof.restype = [ctypes.c_char_p, ctypes.c_void_p], ctypes.c_float
+
+
+@given(st.floats(2**-10, 1024.0, width=32))
+def test_no_shorter_literal_reads_back(value):
+    digits = len(re.sub(r"\D", "", shortest(value, "float")).strip("0"))
+    if digits > 1:
+        assert np.float32(f"{value:.{digits - 2}e}") != np.float32(value)
+
+
+@pytest.mark.parametrize(
+    ("key", "precision", "literal"),
+    [
+        ("c", "half", "(_Float16)0.1f"),
+        ("c", "float", "0.1f"),
+        ("c", "double", "0.1"),
+        ("cpp", "half", "_Float16(0.1f)"),
+        ("hlsl", "half", "0.1h"),
+        ("hlsl", "double", "0.1L"),
+        ("glsl", "half", "0.1hf"),
+        ("glsl", "float", "0.1"),
+        ("glsl", "double", "0.1lf"),
+        ("wgsl", "half", "0.1h"),
+        ("wgsl", "float", "0.1f"),
+        ("metal", "half", "0.1h"),
+        ("osl", "float", "0.1"),
+        ("python", "half", "0.1"),
+        ("javascript", "double", "0.1"),
+    ],
+)
+def test_literals_say_their_precision(key, precision, literal):
+    assert one_literal(key, precision) == literal
+
+
+def one_literal(key, precision):
+    source = write(of_scalars(lambda x: x * 0.1), key, precision)
+    return re.search(r"x \* (.*?);?$", source, re.MULTILINE)[1]
+
+
+REFUSED_NAMES = {
+    "c": ["double", "restrict", "sqrtf", "_x", "a__b"],
+    "cpp": ["template", "operator", "std"],
+    "hlsl": ["cbuffer", "out", "lerp__", "float3"],
+    "glsl": ["uniform", "gl_Position", "vec3", "inversesqrt"],
+    "slang": ["extension", "property", "func"],
+    "metal": ["thread", "kernel", "half"],
+    "wgsl": ["fn", "let", "array", "f32"],
+    "osl": ["output", "color", "closure"],
+    "cuda": ["__global__", "threadIdx"],
+    "python": ["lambda", "np", "None"],
+    "javascript": ["function", "let", "Math"],
+}
+
+
+@pytest.mark.parametrize(
+    ("key", "name"), [(k, n) for k, names in REFUSED_NAMES.items() for n in names]
+)
+def test_a_name_that_means_something_else_is_refused(key, name):
+    precision = next(iter(TARGETS[key].types))
+    spelled = re.escape(f"name {name!r} cannot be used in {TARGETS[key].name}; allowed: ")
+    with pytest.raises(ValueError, match=spelled):
+        write(of_scalars(jnp.sqrt, name=name), key, precision)
+    with pytest.raises(ValueError, match=spelled):
+        write(of_scalars(lambda x: x + 1.0, name), key, precision)
+    with pytest.raises(ValueError, match=spelled):
+        write(replace(COEFFICIENTS, result_name=name), key, precision)
+
+
+def test_what_the_author_calls_a_value_never_breaks_the_code():
+    def call(x):
+        double = x * 1.5 + 0.25
+        λ = double * double + x  # noqa: PLC2401
+        results = λ * λ + double
+        __hidden__ = results * results + λ
+        Example = __hidden__ * __hidden__ + results
+        return Example * Example + double
+
+    source = write(of_scalars(call), "c")
+    names = re.findall(r"const float (\w+) =", source)
+    assert names == ["double_2", "lambda", "results", "hidden", "Example_2"]
+
+
+def test_values_are_named_after_what_they_are():
+    def call(alpha, b):
+        def twice(value):
+            return value * (value + 3.0)
+
+        return (
+            twice(1.0 - alpha) + twice(alpha * alpha) + twice(alpha * b) + twice(b * b * b)
+            + twice(jnp.sqrt(b)) + twice(b + b) + twice(b - alpha)
+        )  # fmt: skip
+
+    source = write(of_scalars(call, "alpha b"), "c")
+    found = dict(re.findall(r"const float (\w+) = (.*);", source))
+    assert found == {
+        "oneMinusAlpha": "1.0f - alpha",
+        "alpha2": "alpha * alpha",
+        "t": "alpha * b",
+        "b3": "b * b * b",
+        "sqrtB": "sqrtf(b)",
+        "twiceB": "b + b",
+        "t_2": "b - alpha",
+    }
+
+
+def test_a_clamped_argument_keeps_its_name():
+    def call(alpha):
+        alpha = jnp.clip(alpha, 0.15, 1.0)
+        return alpha * alpha
+
+    lines = write(of_scalars(call, "alpha"), "c").splitlines()
+    assert [line.strip() for line in lines[6:-1]] == [
+        "const float alphaAtLeast = 0.15f > alpha ? 0.15f : alpha;",
+        "const float alphaClamped = 1.0f < alphaAtLeast ? 1.0f : alphaAtLeast;",
+        "return alphaClamped * alphaClamped;",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("rust",), "target 'rust' is unknown; allowed: c, cpp, .*javascript"),
+        (("javascript",), "precision 'float' is not in JavaScript; allowed: double"),
+        (("c", "quad"), "precision 'quad' is not in C; allowed: half, float, double"),
+        (("wgsl", "double"), "precision 'double' is not in WGSL; allowed: half, float"),
+    ],
+)
+def test_unknown_languages_and_precisions_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        write(QUADRATIC, *arguments)
+
+
+def test_unknown_constants_are_refused():
+    with pytest.raises(ValueError, match="constants 'global' is unknown; allowed: inline, table"):
+        write(QUADRATIC, "c", constants="global")
+
+
+@pytest.mark.parametrize(
+    ("call", "key", "precision", "message"),
+    [
+        (jnp.expm1, "glsl", "float", "'expm1' cannot be written in GLSL at float precision"),
+        (jnp.log1p, "wgsl", "float", "'log1p' cannot be written in WGSL at float"),
+        (jnp.exp, "glsl", "double", "'exp' cannot be written in GLSL at double"),
+        (jnp.sin, "slang", "double", "'sin' cannot be written in Slang at double"),
+        (jnp.sqrt, "hlsl", "double", "'sqrt' cannot be written in HLSL at double"),
+    ],
+)
+def test_what_a_language_lacks_is_refused_by_name(call, key, precision, message):
+    with pytest.raises(ValueError, match=message + r".*allowed: .*\badd\b.*\bmax\b"):
+        write(of_scalars(call), key, precision)
+
+
+def test_a_constant_out_of_range_is_refused():
+    function = of_scalars(lambda x: x * 1e5)
+    assert "100000.0f" in write(function, "c")
+    with pytest.raises(ValueError, match=r"Example: constant 100000.0 is no half; .*65504"):
+        write(function, "c", "half")
+    with pytest.raises(ValueError, match="constant inf is no double"):
+        write(of_scalars(lambda x: jnp.minimum(x, jnp.inf)), "c", "double")
+
+
+def test_a_program_too_long_for_its_language_is_refused():
+    small = replace(target("c"), limit=12)
+    with pytest.raises(ValueError, match="FuzzPs takes 13 operations; allowed in C: at most 12"):
+        write(QUADRATIC, small)
+    assert "FuzzPs" in write(QUADRATIC, replace(small, limit=13))
+
+
+def test_functions_share_a_file_but_not_a_name():
+    source = write([COEFFICIENTS, QUADRATIC], "c", header={"Made": "by hand"})
+    assert source.startswith("// Made: by hand\n\n#include <math.h>\n\n// Parameters of the fit.\n")
+    assert source.count("#include") == 1
+    assert source.index("CalcFuzzPsCoeffs") < source.index("FuzzPs(")
+    with pytest.raises(ValueError, match="function name 'FuzzPs' occurs twice"):
+        write([QUADRATIC, QUADRATIC], "c")
+    with pytest.raises(ValueError, match="'FuzzPs' is a function and a parameter"):
+        write([QUADRATIC, of_scalars(jnp.sin, "FuzzPs")], "c")
+
+
+@pytest.mark.parametrize("key", TARGETS)
+def test_no_header_leaves_its_comment(key):
+    precision = next(iter(TARGETS[key].types))
+    text = (
+        "first line\nsecond line */ \\ \u2028 \x1b\x9b\b\u202eθf ∈ [0, π/2] ½ "
+        + "long " * 40
+        + "\\"
+    )
+    source = write(QUADRATIC, key, precision, header={"Label\n": text})
+    comment = [line for line in source.splitlines() if line.startswith(TARGETS[key].comment)]
+    assert source.isascii() and source.replace("\n", "").isprintable()
+    assert "theta_f in [0, pi/2] 1/2" in source
+    assert "\\" not in source
+    assert (
+        source.split("\n\n")[0].splitlines() == comment[: source.split("\n\n")[0].count("\n") + 1]
+    )
+
+
+def test_units_and_domains_stand_above_the_function():
+    assert "// alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad.\n" in write(COEFFICIENTS, "c")
+
+
+def test_python_takes_arrays_that_broadcast():
+    names = {}
+    exec(write([COEFFICIENTS, QUADRATIC], "python"), names)
+    alpha = np.linspace(0.2, 0.9, 5)[:, None]
+    theta = np.linspace(0.1, 1.5, 4)
+    coefficients = names["CalcFuzzPsCoeffs"](alpha, theta)
+    assert len(coefficients) == 6
+    assert {(c.shape, c.dtype) for c in coefficients} == {((5, 4), np.dtype(np.float32))}
+    assert names["FuzzPs"](coefficients, 0.5, theta).shape == (5, 4)
+
+
+def test_python_keeps_the_precision_where_no_array_says_it():
+    function = of_scalars(lambda x: (jnp.where(x > 0.5, 0.1, 0.2) * 3.0, jnp.asarray(0.1)), "x", 2)
+    names = {}
+    exec(write(function, "python", "half"), names)
+    chosen, constant = names["Example"](np.array([0.25, 0.75]))
+    assert chosen.dtype == constant.dtype == np.float16
+    np.testing.assert_array_equal(chosen, np.float16([0.2, 0.1]) * np.float16(3.0))

@@ -1,0 +1,172 @@
+"""The ambient model: its errors where the answer is known, and its energy."""
+
+import functools
+import json
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from integrals import PS
+from integrals.fuzz.radiance import base_response, layer_response
+from shadefit.ambient.energy import deferred_in_uniform_light, energy
+from shadefit.ambient.errors import (
+    RULE,
+    errors,
+    lights,
+    lit_phase,
+    points,
+    radiances,
+)
+from shadefit.ambient.sheet import periodic
+from shadefit.cli import main
+from shadefit.render.functions import functions
+from shading import (
+    deferred_radiance,
+    direction,
+    fiber_direction,
+    fiber_projected_area,
+    fiber_root,
+    radiance,
+    sample_phase_function,
+)
+from tests.batches import batched
+
+# What RULE promises of radiances in light of mean radiance of order one.
+ACCURACY = 1e-4
+
+
+@functools.cache
+def few(*names):
+    """Evaluate an isotropic and a sharp material, three views each."""
+    views = [(0.0, 0.0), (1.0, np.pi / 4), (1.4, np.pi)]
+    materials = [(1.0, 0.4, 0.2), (0.3, 0.4, 0.2)]
+    return radiances(np.array([[*m, *v] for m in materials for v in views]), names)
+
+
+def test_lights_are_the_lobes_that_they_are_said_to_be():
+    ways = np.random.default_rng(0).normal(size=(200, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    axes = {"from above": 2, "where fibres point": 0, "from the side": 1}
+    every = lights()
+    for name, axis in axes.items():
+        values = jax.vmap(radiance, (None, 0))(every[name], ways)
+        np.testing.assert_allclose(values, ((1 + ways[:, axis]) / 2) ** 2, atol=1e-13)
+    uniform = jax.vmap(radiance, (None, 0))(every["uniform"], ways)
+    np.testing.assert_allclose(uniform, 1, rtol=1e-13)
+
+
+@pytest.mark.slow
+def test_the_model_is_exact_for_isotropic_fibres_in_uniform_light():
+    found = few()
+    column = found.lights.index("uniform")
+    for part in ("layer", "base"):
+        model, exact = found.models["exact"][part], found.exact[part]
+        np.testing.assert_allclose(model[:3, column], exact[:3, column], atol=ACCURACY)
+
+
+@pytest.mark.slow
+def test_the_models_factor_is_not_the_integral_that_it_stands_for():
+    at = np.array([(1.0, 0.4, 0.2, 1.0, 0.5), (0.3, 0.0, 0.2, 0.0, 0.0), (0.3, 1.0, 0.2, 1.0, 0.5)])
+    found = lit_phase(at)
+    np.testing.assert_allclose(found[0], 0.5, atol=ACCURACY)
+    # By reflections of the view: p(u, v) = p(v, u) σ(v)/σ(u).
+    alpha, fiber, view = 0.3, fiber_direction(1.0), direction(1.0, 0.5)
+    root, points = fiber_root(fiber, alpha), np.random.default_rng(0).random((200_000, 2))
+
+    def ratio(point):
+        light = sample_phase_function(root, view, point)
+        areas = [fiber_projected_area(w @ fiber, alpha) for w in (view, light)]
+        return jnp.where(light[2] > 0, areas[0] / areas[1], 0.0)
+
+    values = jax.jit(jax.vmap(ratio))(points)
+    assert abs(values.mean() - found[2]) < 5 * values.std() / np.sqrt(len(values)) + ACCURACY
+    assert abs(found[2] - (1 - PS.value(alpha, 1.0, 1.0, 0.5))) > 0.01
+
+
+@pytest.mark.slow
+def test_the_model_errs_for_sharp_fibres_far_more_than_its_tables():
+    rows = {(row["part"], row["light"]): row for row in errors(few())}
+    row = rows["layer", "against fibres"]
+    assert row["rms"]["exact"] > 0.1
+    assert abs(row["rms"]["published"] - row["rms"]["exact"]) < 0.3 * row["rms"]["exact"]
+    assert rows["base", "uniform"]["rms"]["exact"] < 0.02
+
+
+@pytest.mark.slow
+def test_errors_are_those_of_the_radiances():
+    found = few("published")
+    (row,) = (r for r in errors(found) if r["part"] == "layer" and r["light"] == "uniform")
+    exact, model = (p["layer"][:, 0] for p in (found.exact, found.models["published"]))
+    expected = np.sqrt(np.mean((model - exact) ** 2)) / exact.mean()
+    np.testing.assert_allclose(row["rms"]["published"], expected, rtol=1e-12)
+    assert set(row["where"]) == {"spread", "tilt", "density", "cos_v", "azimuth"}
+
+
+@pytest.mark.slow
+def test_no_view_gains_in_uniform_light_but_for_tables_at_their_edge():
+    rows = energy(few("published"))
+    largest = {row["what"]: row["largest"] for row in rows}
+    # Fibres of three times white: only the deferred version takes them.
+    assert largest.pop("deferred, albedo 0.6") > 1
+    assert all(value < 1 for value in largest.values())
+    # Published P_s falls to −0.04: at one grazing view the model's layer exceeds the light.
+    chosen = functions("published")
+    alpha, theta_f, density, cos_v, phi = 0.1672, 0.3841, 0.4494, 0.01254, 2.93
+    sine = np.sqrt(1 - cos_v**2)
+    cos_vt = sine * np.cos(phi) * np.sin(theta_f) + cos_v * np.cos(theta_f)
+    cosines = (jnp.asarray(x) for x in (cos_v, cos_vt, np.cos(theta_f)))
+    down = chosen.ps(*cosines, alpha, theta_f)
+    assert down < 0
+    assert 1 < chosen.g(density, cos_v) * (1 - down) < 1.02
+
+
+@pytest.mark.slow
+def test_the_deferred_version_is_linear_in_albedo_and_gains_when_it_is_high():
+    low, high = deferred_in_uniform_light(0.1, 0.1), deferred_in_uniform_light(0.6, 0.1)
+    np.testing.assert_allclose(high, 6 * low, rtol=1e-12)
+    assert high > 1
+    # The same integral by uniform random directions of light.
+    rng = np.random.default_rng(1)
+    cosine, phi = rng.uniform(-0.2, 1, 100_000), rng.uniform(0, 2 * np.pi, 100_000)
+    sine = np.sqrt(1 - cosine**2)
+    ways = np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=1)
+    view = direction(np.arccos(0.1), 0.0)
+    seen = jax.jit(jax.vmap(lambda u: deferred_radiance(u, view, 0.1, 1.0)))(ways)
+    mean, error = seen.mean(), seen.std() / np.sqrt(len(seen))
+    assert abs(2 * np.pi * 1.2 * mean - low) < 5 * 2 * np.pi * 1.2 * error
+
+
+@pytest.mark.slow
+def test_the_rule_is_as_good_as_it_says():
+    at = points()[::7]
+    coarse = batched(functools.partial(layer_response, **RULE), 16)(*at.T)
+    fine = batched(functools.partial(layer_response, step=1 / 16, azimuths=256), 16)(*at.T)
+    assert np.abs(coarse - fine).max() < ACCURACY
+    bases = [
+        batched(functools.partial(base_response, **rule), 16)(*at[::5, :3].T)
+        for rule in (RULE, {"step": 1 / 16, "azimuths": 256})
+    ]
+    for coarse, fine in zip(*bases, strict=True):
+        assert np.abs(coarse - fine).max() < ACCURACY
+
+
+@pytest.mark.slow
+def test_the_command_prints_what_it_measured(tmp_path, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(["ambient", "--out", str(tmp_path), "--json"])
+    assert stopped.value.code == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["points"] == len(points())
+    assert len(record["errors"]) == 2 * len(lights())
+    assert (tmp_path / "ambient.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("n", [7, 8])
+def test_a_period_is_interpolated_by_its_harmonics(n):
+    def wave(x):
+        return np.stack([1 + np.cos(x) - 2 * np.sin(3 * x), np.cos(2 * x)])
+
+    found = periodic(wave(2 * np.pi * np.arange(n) / n), 50)
+    np.testing.assert_allclose(found, wave(np.linspace(0, 2 * np.pi, 51)), atol=1e-14)

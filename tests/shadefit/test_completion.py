@@ -1,0 +1,59 @@
+"""What a shell completes: what there is, and without waiting for JAX."""
+
+import subprocess
+import sys
+
+import pytest
+
+from coefficients.catalogue import AS_PRINTED, PUBLISHED, QUANTITIES, load, names
+from coefficients.shaders import EXACT_PS, shader
+from programs.languages import TARGETS
+from shadefit import completion
+from shadefit.refit import ALL, selection
+
+
+def test_the_names_that_are_repeated_are_the_real_ones():
+    assert completion._PUBLISHED == PUBLISHED
+    assert completion._NAMES == QUANTITIES
+    assert completion._EXACT == (EXACT_PS,)
+
+
+def test_all_that_there_is_is_completed():
+    assert completion.complete_quantity("") == [*QUANTITIES, ALL]
+    tables = [name for name in names() if not name.endswith(AS_PRINTED)]
+    assert sorted(completion.complete_table("")) == sorted(tables)
+    assert completion.complete_shader("") == [*completion.complete_table(""), EXACT_PS]
+    assert completion.complete_language("") == list(TARGETS)
+
+
+def test_what_is_completed_is_taken():
+    for name in completion.complete_quantity(""):
+        assert selection([name])
+    for name in completion.complete_table(""):
+        load(name)
+    assert shader(EXACT_PS).form is None
+
+
+@pytest.mark.parametrize(
+    ("complete", "begun", "expected"),
+    [
+        (completion.complete_quantity, "a", [ALL]),
+        (completion.complete_table, "published/p", ["published/ps"]),
+        (completion.complete_shader, "exact", [EXACT_PS]),
+        (completion.complete_language, "c", ["c", "cpp", "cuda"]),
+        (completion.complete_table, "zz", []),
+    ],
+)
+def test_what_is_begun_is_ended(complete, begun, expected):
+    assert complete(begun) == expected
+
+
+def test_completion_does_not_wait_for_jax():
+    code = (
+        "import sys; from shadefit import cli, completion\n"
+        "for each in ('quantity', 'table', 'shader', 'language'):\n"
+        "    assert getattr(completion, f'complete_{each}')('')\n"
+        "print('jax' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"

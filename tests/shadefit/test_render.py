@@ -1,0 +1,244 @@
+"""Rendering: files that others read, light that adds up, and refusals that say why."""
+
+import io
+import json
+import struct
+import zlib
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from PIL import Image
+
+from integrals import G
+from shadefit.cli import main
+from shadefit.render.compare import Settings, image, run
+from shadefit.render.fibers import azimuths
+from shadefit.render.functions import table_sets
+from shadefit.render.images import colour, from_srgb, srgb, write_exr
+from shadefit.render.scenes import SCENES, cloth_height
+from shadefit.render.shade import _ROOTS, BACKDROP, sky_coefficients, tabulated
+from shadefit.render.sheet import round_up
+from shading import irradiance, radiance
+
+SIZE = 16
+
+
+def cloth(x, y):
+    return cloth_height(jnp.asarray(x), jnp.asarray(y))
+
+
+def channels(names, height=3, width=5) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(0)
+    return {name: rng.normal(size=(height, width)) * 10.0 ** rng.integers(-3, 5) for name in names}
+
+
+def read_exr(data: bytes) -> dict[str, np.ndarray]:
+    """Read what is written here: scan lines of 32-bit floats, not compressed."""
+    assert struct.unpack_from("<2i", data) == (20000630, 2)
+    attributes, at = {}, 8
+    while data[at]:
+        key, kind, _ = data[at:].split(b"\0", 2)
+        at += len(key) + len(kind) + 2
+        (size,) = struct.unpack_from("<i", data, at)
+        attributes[key] = data[at + 4 : at + 4 + size]
+        at += 4 + size
+    assert attributes[b"compression"] == b"\0"
+    names, listed = [], attributes[b"channels"]
+    while listed[0]:
+        name, listed = listed.split(b"\0", 1)
+        assert struct.unpack_from("<i", listed) == (2,)
+        names.append(name.decode())
+        listed = listed[16:]
+    left, top, right, bottom = struct.unpack("<4i", attributes[b"dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    offsets = struct.unpack_from(f"<{height}Q", data, at + 1)
+    count = width * len(names)
+    rows = [np.frombuffer(data, "<f4", count, offset + 8) for offset in offsets]
+    image = np.stack(rows).reshape(height, len(names), width)
+    return {name: image[:, i] for i, name in enumerate(names)}
+
+
+def test_an_exr_file_is_read_back_bit_for_bit():
+    written = channels(["R", "G", "B", "sphere.exact.R"])
+    read = read_exr(write_exr(written))
+    assert list(read) == sorted(written)
+    for name, values in written.items():
+        np.testing.assert_array_equal(read[name], values.astype(np.float32))
+
+
+def test_openexr_reads_it_too(tmp_path):
+    library = pytest.importorskip("OpenEXR")
+    written, path = channels(["R", "G", "B"]), tmp_path / "image.exr"
+    path.write_bytes(write_exr(written))
+    pixels = library.File(str(path)).channels()["RGB"].pixels
+    expected = np.stack([written[name] for name in "RGB"], axis=-1).astype(np.float32)
+    np.testing.assert_array_equal(pixels, expected)
+
+
+def test_srgb_is_the_standard_up_to_its_shoulder():
+    np.testing.assert_allclose(
+        srgb(np.array([0.0, 0.0031308, 0.2140411])), [0, 0.04045, 0.5], atol=1e-4
+    )
+    x = np.linspace(0, 0.8, 50)
+    np.testing.assert_allclose(from_srgb(srgb(x)), x, atol=1e-7)
+    assert np.all(np.diff(srgb(np.linspace(0, 5, 200))) > 0)
+    assert srgb(np.array([1e9])) <= 1
+
+
+def test_colours_are_read_or_refused():
+    np.testing.assert_allclose(colour("#ff0080", "fiber"), (1, 0, 0.2158605), atol=1e-6)
+    for text in ("#ff00", "red", "#gg0000", "", "#1234567"):
+        with pytest.raises(ValueError, match="fiber is"):
+            colour(text, "fiber")
+
+
+def test_the_sky_is_its_three_colours():
+    light = sky_coefficients()
+    for height, expected in ((1.0, (0.55, 0.70, 1.0)), (0.0, (0.95, 0.92, 0.88))):
+        at = np.array([np.sqrt(1 - height**2), 0.0, height])
+        np.testing.assert_allclose(radiance(light, at), expected, rtol=1e-12)
+    below = np.array([0.0, 0.0, -1.0])
+    np.testing.assert_allclose(radiance(light, below), (0.22, 0.19, 0.17), rtol=1e-12)
+
+
+@pytest.mark.slow
+def test_the_tabulated_g_is_g_to_what_an_image_can_show():
+    roots = np.linspace(_ROOTS[0], 1, 3001)
+    exact = jax.jit(jax.vmap(G.value, (None, 0)))
+    for density in (0.01, 0.5):
+        between = jax.vmap(tabulated, (None, 0))(exact(density, _ROOTS**2), roots**2)
+        np.testing.assert_allclose(between, exact(density, roots**2), atol=1e-5)
+
+
+@pytest.mark.parametrize("scene", ["sphere", pytest.param("cloth", marks=pytest.mark.slow)])
+def test_what_is_seen_lies_on_the_surface(scene):
+    hits = SCENES[scene].hits(SIZE)
+    seen = np.asarray(hits.seen)
+    p, n = np.asarray(hits.position)[seen], np.asarray(hits.normal)[seen]
+    off = p[:, 2] - cloth(p[:, 0], p[:, 1]) if scene == "cloth" else (p**2).sum(1) - 1
+    assert np.abs(off).max() < 1e-4
+    np.testing.assert_allclose(np.linalg.norm(n, axis=1), 1, rtol=1e-12)
+    assert np.all((n * np.asarray(hits.view)[seen]).sum(1) > -0.05)
+    np.testing.assert_allclose((n * np.asarray(hits.comb)[seen]).sum(1), 0, atol=1e-6)
+    if scene == "cloth":
+        step = 1e-5
+        slope = (cloth(p[:, 0] + step, p[:, 1]) - cloth(p[:, 0] - step, p[:, 1])) / 2
+        np.testing.assert_allclose(-n[:, 0] / n[:, 2], slope / step, atol=1e-6)
+    assert np.all((hits.open_sky > 0) & (hits.open_sky <= 1))
+
+
+@pytest.mark.slow
+def test_without_a_layer_the_sphere_is_lambertian():
+    """Density 0: base (E_sun max(u·n, 0) + E_sky)/π, whatever the tables."""
+    settings = Settings(density=0.0, size=SIZE, fibers="even")
+    rendered = image("sphere", settings, "exact")
+    hits, light = SCENES["sphere"].hits(2 * SIZE), settings.light
+    normal = np.asarray(hits.normal)
+    sun = np.maximum(normal @ light.direction, 0)[:, None] * light.sun * np.array([1.0, 0.93, 0.82])
+    sky = jax.vmap(irradiance, (None, 0))(sky_coefficients(), normal) * light.sky
+    expected = np.array(settings.material.base) / np.pi * (sun + np.asarray(sky))
+    expected = np.where(np.asarray(hits.seen)[:, None], expected, BACKDROP)
+    expected = expected.reshape(SIZE, 2, SIZE, 2, 3).mean((1, 3))
+    # The least cosine of the view moves nothing here; that of the light, 0.001 of the sun.
+    np.testing.assert_allclose(rendered, expected, atol=1e-6)
+
+
+@pytest.mark.slow
+def test_tables_are_hard_to_tell_from_exact_functions():
+    settings = Settings(size=SIZE)
+    exact = image("sphere", settings, "exact")
+    assert {"published", "refitted"} <= set(table_sets())
+    difference = np.abs(image("sphere", settings, "published") - exact)
+    assert 1e-5 < difference.max() < 0.05
+
+
+def test_a_map_of_fibres_is_followed(tmp_path):
+    path = tmp_path / "map.png"
+    pixels = np.zeros((4, 4, 3), np.uint8)
+    pixels[..., 0], pixels[..., 1] = 128, 255
+    Image.fromarray(pixels).save(path)
+    hits = SCENES["sphere"].hits(SIZE)
+    np.testing.assert_allclose(azimuths(str(path), hits), np.pi / 2, atol=0.005)
+    assert np.all(azimuths("even", hits) == 0)
+    crushed = np.asarray(azimuths("crushed", hits))
+    assert np.ptp(crushed) > 1
+    assert np.abs(crushed).max() < np.pi / 2
+
+
+@pytest.mark.parametrize("content", [None, b"no image", b"grey"])
+def test_a_map_that_is_none_is_refused(tmp_path, content):
+    path = tmp_path / "map.png"
+    if content == b"grey":
+        buffer = io.BytesIO()
+        Image.fromarray(np.zeros((4, 4), np.uint8)).save(buffer, "png")
+        content = buffer.getvalue()
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ValueError, match="fibers"):
+        azimuths(str(path), SCENES["sphere"].hits(SIZE))
+
+
+@pytest.mark.parametrize("size", [(4097, 1), (1, 4097), (15000, 15000), (2**31 - 1, 2**31 - 1)])
+def test_a_map_of_too_many_pixels_is_refused_before_they_are_read(tmp_path, size):
+    def chunk(kind, data):
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", *size, 8, 2, 0, 0, 0))
+    path = tmp_path / "map.png"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", b"") + chunk(b"IEND", b""))
+    with pytest.raises(ValueError, match=f"{size[0]}×{size[1]} pixels: allowed are 4096 an edge"):
+        azimuths(str(path), SCENES["sphere"].hits(SIZE))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"density": 0.6},
+        {"density": float("nan")},
+        {"spread": 0.0},
+        {"tilt": 2.0},
+        {"size": 8},
+        {"fiber": "pink"},
+        {"sun": -1.0},
+    ],
+)
+def test_bad_settings_are_refused_by_name(tmp_path, change):
+    (name,) = change
+    with pytest.raises(ValueError, match=name):
+        run([], Settings(**change), tmp_path / "out", sweep=False, as_json=False)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.slow
+def test_the_command_writes_both_files(tmp_path, capsys):
+    arguments = ["render", "sphere", "--size", str(SIZE), "--out", str(tmp_path), "--json"]
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == 0
+    record = json.loads(capsys.readouterr().out)
+    assert {row["tables"] for row in record["images"]} == set(table_sets())
+    assert (tmp_path / "render.png").read_bytes().startswith(b"\x89PNG")
+    read = read_exr((tmp_path / "render.exr").read_bytes())
+    np.testing.assert_array_equal(read["R"], read["sphere.exact.R"])
+    for row in record["images"]:
+        weights = dict(R=0.2126, G=0.7152, B=0.0722)
+        difference = sum(
+            w * (read[f"sphere.{row['tables']}.{c}"] - read[f"sphere.exact.{c}"])
+            for c, w in weights.items()
+        )
+        np.testing.assert_allclose(np.abs(difference).max(), row["max"], rtol=1e-3, atol=1e-6)
+
+
+@pytest.mark.slow
+def test_the_sweep_is_drawn(tmp_path):
+    run(["sphere"], Settings(size=SIZE), tmp_path, sweep=True, as_json=False)
+    with Image.open(tmp_path / "sweep.png") as sheet:
+        assert sheet.size[0] > 400
+
+
+def test_limits_are_round():
+    assert [round_up(x) for x in (0.0011, 0.002, 0.3, 7.0)] == [0.002, 0.002, 0.5, 10.0]
