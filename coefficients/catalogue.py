@@ -1,92 +1,189 @@
-"""Where tables come from: fits, the folder of published constants, the folder of refits, files."""
+"""What a name stands for: a table that is kept here, a table's file, or a closed form.
 
-import json
+Whatever the user names is resolved once, into an `Entry`, which is passed on.
+"""
+
 import os
-import platform
-import reprlib
-from dataclasses import asdict
-from importlib.metadata import version
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
-import jax.numpy as jnp
 import numpy as np
 
-from coefficients.table import SCHEMA, Table, parse, read
-from fitting import PAPER_FORMS, Fit, Form
-from fitting.families import FAMILIES, form_class
-from fitting.goal import LEAST_SQUARES
-from fitting.points.sample import Sample
-from fitting.velvet import ConservativeNorm
-from integrals import INTEGRALS
+from coefficients.agreement import fitted_form
+from coefficients.table import Table, read
+from fitting import FittedForm
+from integrals.reference import Axis
+from programs.function import Function
+from quantities import Problem, problem, problems
+from quantities.calling_convention import renamed
 
-FOLDER = Path(__file__).parent
-QUANTITIES = tuple(INTEGRALS)
-# Those that the paper has a table of.
-PUBLISHED = ("ps", "g", "q", "r")
-# Forms that are no family's: the paper's, and r(k)'s.
-SINGLE_FORMS = {**PAPER_FORMS, ConservativeNorm.name: ConservativeNorm}
+FOLDER = Path(__file__).parent / "tables"
 # A published table with this behind its name is taken as printed, its errata left in.
 AS_PRINTED = "@printed"
-_STEMS = {*(f"refit/{q}" for q in QUANTITIES), *(f"published/{q}" for q in PUBLISHED)}
-# A domain that has been through float32, or was written with seven digits, is the same.
-ROUNDING = 1e-6
-_LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
+EXACT = "exact"
+
+Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
+_KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
 
 
-def names() -> list[str]:
-    """List the names that `load` knows, published tables last."""
-    refitted = [path.stem for path in sorted((FOLDER / "refit").glob("*.json"))]
-    best = names_of_best()
-    published = [f"published/{name}" for name in sorted(PUBLISHED)]
+@dataclass(frozen=True)
+class Entry:
+    """What a name stands for: its quantity, and the table with its fitted form.
+
+    `name` is what the user named. A closed form (kind 'exact') has neither table nor form.
+    """
+
+    name: str
+    kind: Kind
+    problem: Problem
+    table: Table | None = None
+    fitted: FittedForm | None = None
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The axes, restricted to the domain that the entry is made for."""
+        if self.fitted is not None:
+            return self.fitted.axes
+        return self._exact_code().axes
+
+    @property
+    def equation(self) -> str:
+        """What the value is computed by."""
+        return self.require_table().equation if self.table else self._exact_code().equation
+
+    @property
+    def remark(self) -> str | None:
+        """What the caller of the exported functions must know of their arguments."""
+        exact = self._exact_code().remark if self.fitted is None else None
+        return self.problem.calling.remark if self.fitted is not None else exact
+
+    def require_table(self) -> Table:
+        """Return the table; raises ValueError for a closed form, which has none."""
+        if self.table is None:
+            raise ValueError(
+                f"{self.name} has no coefficients: allowed is {self.name} with --to LANG"
+            )
+        return self.table
+
+    def require_fitted(self) -> FittedForm:
+        """Return the fitted form; raises ValueError for a closed form, which has none."""
+        self.require_table()
+        assert self.fitted is not None
+        return self.fitted
+
+    def functions(self, precision: str = "float", name: str | None = None) -> tuple[Function, ...]:
+        """Return the exported functions in the order of their calls; the last gives the value.
+
+        `precision` decides how many steps a closed form takes; `name` replaces the name of the last
+        function. Raises ValueError for a name that is no identifier.
+        """
+        if self.fitted is None:
+            functions = self._exact_code().functions(precision)
+        else:
+            functions = self.problem.calling.functions(self.fitted)
+        return functions if name is None else renamed(functions, name)
+
+    def arguments_at(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return what each function is called with at points (n, axes), without earlier results."""
+        if self.fitted is None:
+            return self._exact_code().arguments_at(points)
+        return self.problem.calling.arguments_at(self.fitted, points)
+
+    def _exact_code(self):
+        code = self.problem.exact_code
+        assert code is not None
+        return code
+
+
+def resolve(name: str) -> Entry:
+    """Return what a name stands for: a table's name, 'exact/NAME', or the path of a table's file.
+
+    Names are 'ps' (refitted), 'published/ps', 'published/ps@printed', 'best/q-9', 'exact/ps'. A
+    published table is corrected by its errata unless '@printed' follows its name. Raises ValueError
+    for a name that is none of these, and for a file that is no valid table.
+    """
+    if name in names() or name.removesuffix(AS_PRINTED) in _files():
+        return _kept(name)
+    # os.path, unlike Path, takes a name that is too long for one that does not exist.
+    is_file = name.endswith(".json") or os.path.isfile(name)
+    if name.startswith(f"{EXACT}/") and not is_file:
+        return _closed_form(name)
+    if is_file:
+        table = corrected(read(Path(name)))
+        owner = problem(table.quantity)
+        return Entry(name, "file", owner, table, fitted_form(table, owner))
+    raise ValueError(
+        f"no table is called {name!r}: allowed are {', '.join(_allowed())}, or a .json file's path"
+    )
+
+
+def entries(owner: Problem | None = None) -> list[Entry]:
+    """Return the tables that are kept here, of one quantity or of all.
+
+    Of all: refitted tables, best ones, published ones, and those as printed, each by name. Of one
+    quantity: as printed, published, refitted, and best.
+    """
+    found = [_kept(name) for name in names()]
+    if owner is None:
+        return found
+    order: dict[Kind, int] = {"printed": 0, "published": 1, "refitted": 2, "best": 3}
+    own = [entry for entry in found if entry.problem is owner]
+    return sorted(own, key=lambda entry: (order[entry.kind], entry.name))
+
+
+def published(owner: Problem) -> Entry | None:
+    """Return the published table of a quantity, corrected; None if there is none."""
+    name = f"published/{owner.name}"
+    return _kept(name) if name in _files() else None
+
+
+def printed(owner: Problem) -> Entry | None:
+    """Return the published table as printed; None if its errata change no coefficient."""
+    name = f"published/{owner.name}{AS_PRINTED}"
+    return _kept(name) if name in names() else None
+
+
+def refitted(owner: Problem) -> Entry | None:
+    """Return the refitted table of a quantity; None if there is none."""
+    return _kept(owner.name) if owner.name in _files() else None
+
+
+def with_published() -> list[Problem]:
+    """List the quantities that have a published table, which the others are held against."""
+    return [owner for owner in problems().values() if published(owner) is not None]
+
+
+@lru_cache(maxsize=1)
+def names() -> tuple[str, ...]:
+    """List the names of the tables that are kept here: refitted, best, published, as printed."""
+    known = list(_files())
     printed = [
-        name + AS_PRINTED for name in published if load(name) != load(name + AS_PRINTED)
-    ]  # fmt: skip
-    return [*refitted, *best, *published, *printed]
+        f"{name}{AS_PRINTED}"
+        for name in known
+        if name.startswith("published/") and corrected(_read(name)) != _read(name)
+    ]
+    return (*known, *printed)
 
 
 def names_of_best() -> list[str]:
-    """List the tables of forms that are not the paper's: 'best/q-8', …."""
-    return [f"best/{path.stem}" for path in sorted((FOLDER / "best").glob("*.json"))]
+    """List the tables of forms that are not the published ones: 'best/q-9', …."""
+    return [name for name in _files() if name.startswith("best/")]
 
 
-def load(name: str) -> Table:
-    """Read a table by name ('ps', 'published/ps', 'published/ps@printed') or by a file's path.
-
-    A published table is corrected by its errata unless '@printed' follows its name. Raises
-    ValueError for a name that is neither, and for a file that is no valid table.
-    """
-    if is_known(name):
-        table = read(FOLDER / f"{_stem(name)}.json")
-        return table if name.endswith(AS_PRINTED) else corrected(table)
-    # os.path, unlike Path, takes a name that is too long for one that does not exist.
-    if name.endswith(".json") or os.path.isfile(name):
-        table = corrected(read(Path(name)))
-        # Whatever it is for: what it says of its form is true.
-        form_of(table)
-        return table
-    allowed = ", ".join((*QUANTITIES, *(f"published/{q}" for q in PUBLISHED), *names_of_best()))
-    raise ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
-
-
-def is_known(name: str) -> bool:
-    """Tell whether a name is one of the tables that are kept here, and no file's path."""
-    stem = _stem(name)
-    if name.endswith(AS_PRINTED):
-        return stem.startswith("published/") and stem in _STEMS
-    return stem in _STEMS or stem in names_of_best()
-
-
-def _stem(name: str) -> str:
-    """Give the path of a name's file in FOLDER, without its ending."""
-    stem = name.removesuffix(AS_PRINTED)
-    return stem if "/" in stem else f"refit/{stem}"
+def path_of(name: str) -> Path:
+    """Return the file that a table's name is kept in, or would be."""
+    if name in _files():
+        return _files()[name]
+    return FOLDER / problem(name).topic / "refit" / f"{name}.json"
 
 
 def corrected(table: Table) -> Table:
     """Apply the errata that a published table records; others are returned as they are.
 
-    What is applied is not left to be applied again, when the table is written and read.
+    Applied errata are marked, so that they are not applied again when the table is written and read.
     """
     if table.publication is None:
         return table
@@ -106,124 +203,46 @@ def corrected(table: Table) -> Table:
     )
 
 
-def form_of(table: Table) -> Form:
-    """Give the form that a table holds the coefficients of.
+@lru_cache(maxsize=1)
+def _files() -> dict[str, Path]:
+    """Map the names of the tables that are kept here to their files: refitted, best, published."""
+    found: dict[str, Path] = {}
+    for folder, prefix in (("refit", ""), ("best", "best/"), ("published", "published/")):
+        paths = sorted(FOLDER.glob(f"*/{folder}/*.json"), key=lambda path: path.stem)
+        found |= {f"{prefix}{path.stem}": path for path in paths}
+    return found
 
-    Raises ValueError for a form that is not known, one of another quantity, coefficients that are
-    not in its shape, and arguments and names of coefficients that are not the form's.
-    """
-    if table.shape is None and table.form in SINGLE_FORMS:
-        form = SINGLE_FORMS[table.form]
-    elif table.shape is None and table.form not in FAMILIES:
-        allowed = ", ".join((*SINGLE_FORMS, *FAMILIES))
-        raise ValueError(f"form {table.form!r} of {table.name} is not known: allowed are {allowed}")
-    else:
-        form = form_class(table.form, table.shape or {})
-    if form.integral.name != table.quantity:
+
+@lru_cache(maxsize=256)
+def _read(name: str) -> Table:
+    return read(_files()[name])
+
+
+@lru_cache(maxsize=256)
+def _kept(name: str) -> Entry:
+    """Return a table that is kept here; raises ValueError for '@printed' behind another's name."""
+    stem = name.removesuffix(AS_PRINTED)
+    kind = _KINDS[_files()[stem].parent.name]
+    if stem != name and kind != "published":
+        raise ValueError(f"{stem} is not published: allowed is {stem} without {AS_PRINTED}")
+    table = _read(stem) if stem != name else corrected(_read(stem))
+    owner = problem(table.quantity)
+    shown: Kind = "printed" if stem != name else kind
+    return Entry(name, shown, owner, table, fitted_form(table, owner))
+
+
+def _closed_form(name: str) -> Entry:
+    known = {f"{EXACT}/{p.name}": p for p in problems().values() if p.exact_code is not None}
+    if name not in known:
         raise ValueError(
-            f"form {table.form!r} is one of {form.integral.name}, not {table.quantity}"
+            f"no closed form is exported as {name!r}: allowed are {', '.join(known)} and tables' "
+            "names"
         )
-    expected = np.shape(form.coefficient_names())
-    coefficients = np.array(table.coefficients)
-    if coefficients.shape != expected:
-        raise ValueError(
-            f"{table.name} has coefficients of shape {coefficients.shape}, "
-            f"form {table.form!r} takes {expected}"
-        )
-    _require_agreement(table, form)
-    return form(jnp.asarray(coefficients))
+    return Entry(name, "exact", known[name])
 
 
-def _require_agreement(table: Table, form: type[Form]) -> None:
-    """Raise ValueError where a table says of its form what the form does not."""
-    given = {each.name: (each.unit, each.domain) for each in table.arguments}
-    wanted = {axis.name: (axis.unit, [axis.lower, axis.upper]) for axis in form.axes}
-    if [each.name for each in table.arguments] != list(wanted):
-        raise _contradiction(table, "arguments", list(given), list(wanted))
-    for name, (unit, domain) in wanted.items():
-        its_unit, its_domain = given[name]
-        if its_unit != unit:
-            raise _contradiction(table, f"the unit of {name}", its_unit, unit)
-        if not np.allclose(its_domain, domain, ROUNDING, ROUNDING):
-            raise _contradiction(table, f"the domain of {name}", its_domain, domain)
-    names = np.ravel(np.array(table.coefficient_names, dtype=object))
-    expected = np.ravel(np.array(form.coefficient_names(), dtype=object))
-    for index, (its_name, name) in enumerate(zip(names, expected, strict=True)):
-        if its_name != name:
-            raise _contradiction(table, f"the name of coefficient {index}", its_name, name)
-
-
-def _contradiction(table: Table, what: str, given: Any, wanted: Any) -> ValueError:
-    # What a file holds may be long: it is shown in part.
-    return ValueError(
-        f"{table.name} gives {what} as {reprlib.repr(given)}, "
-        f"form {table.form!r} has {reprlib.repr(wanted)}"
-    )
-
-
-def from_fit(fit: Fit, command: str, name: str | None = None) -> Table:
-    """Write down a fit as a table, by the quantity's name or another; `command` is what made it."""
-    form = type(fit.form)
-    record = {
-        "schema": SCHEMA,
-        "name": name or form.integral.name,
-        "quantity": form.integral.name,
-        "form": form.name,
-        **({"shape": form.shape} if form.shape is not None else {}),
-        "equation": form.equation,
-        "arguments": [_argument(axis) for axis in form.axes],
-        "coefficients": np.asarray(fit.form.coefficients).tolist(),
-        "coefficient_names": form.coefficient_names(),
-        "grid": _grid(fit),
-        "weight": fit.weight,
-        **({"goal": asdict(fit.goal)} if fit.goal != LEAST_SQUARES else {}),
-        "reference": {"leg": form.integral.reference, "error": fit.reference_error},
-        "errors": {"on_grid": _errors(fit.on_grid), "off_grid": _errors(fit.off_grid)},
-        "certificates": {
-            "denominator_bound": _finite(fit.certificate.bound),
-            "boxes": fit.certificate.boxes,
-            **_known("range", fit.range and [fit.range.lower, fit.range.upper]),
-            **_known("least_error", fit.lower_bound),
-            **_known("conservative_bound", fit.conservative_bound),
-        },
-        "provenance": {
-            "command": command,
-            "versions": {
-                "python": platform.python_version(),
-                **{library: version(library) for library in _LIBRARIES},
-            },
-            "solver": fit.solver,
-        },
-    }
-    return parse(json.dumps(record), f"the fit of {form.integral.name}")
-
-
-def _grid(fit: Fit) -> dict:
-    if isinstance(fit.grid, Sample):
-        return {"nodes": [], "directions": 0, "points": len(fit.grid.points)}
-    nodes = [
-        {"argument": axis.name, "count": len(nodes), "spacing": fit.grid.spacing}
-        for axis, nodes in zip(fit.grid.axes, fit.grid.nodes, strict=True)
-    ]
-    return {"nodes": nodes, "directions": fit.directions}
-
-
-def _argument(axis) -> dict:
-    return {"name": axis.name, "unit": axis.unit, "domain": [float(axis.lower), float(axis.upper)]}
-
-
-def _errors(errors) -> dict:
-    return {
-        "rms": errors.rms,
-        "max": errors.largest,
-        "where": errors.where,
-        "points": errors.points,
-    }
-
-
-def _known(name: str, value: Any) -> dict:
-    return {} if value is None else {name: value}
-
-
-def _finite(bound: float) -> float | None:
-    return bound if np.isfinite(bound) else None
+def _allowed() -> Sequence[str]:
+    """List names for a message: quantities, published tables and best ones."""
+    owners = problems().values()
+    public = [f"published/{owner.name}" for owner in with_published()]
+    return [*(owner.name for owner in owners), *public, *names_of_best()]

@@ -1,26 +1,20 @@
-"""Tables side by side, each against the exact integral on the same points."""
+"""Tables side by side, each against the exact values on the same points."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from coefficients.catalogue import form_of
+from coefficients.catalogue import Entry
 from coefficients.table import Table
-from fitting import (
-    Domain,
-    Errors,
-    Form,
-    common_domain,
-    form_values,
-    judge,
-    measure,
-    off_grid_reference,
-)
+from fitting import Domain, Errors, common_domain, form_values, judge
+from fitting.errors import measure
+from fitting.points.scattered import judging_points
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One table of a comparison: its errors, and its rms error over the first table's."""
+class Contestant:
+    """One table of a comparison: its errors, and these over those of the first table."""
 
     label: str
     table: Table
@@ -33,67 +27,72 @@ class Entry:
 class Comparison:
     """Tables of one quantity on the same off-grid points of their common domain.
 
-    `difference` and `where` tell by how much, and where, the last table differs most from the
-    first.
+    `difference` is the largest difference between the first table and the last, at `where`.
     """
 
     quantity: str
     domain: Domain
-    entries: tuple[Entry, ...]
+    contestants: tuple[Contestant, ...]
     difference: float
     where: dict[str, float]
 
 
-def compare(labelled: list[tuple[str, Table]]) -> Comparison:
-    """Compare tables of one quantity; the first is what the others are measured by.
+def compare(labelled: Sequence[tuple[str, Entry]]) -> Comparison:
+    """Compare tables of one quantity; the others' errors are given over those of the first.
 
-    The points are the off-grid set of the domain that all have in common: 2¹² for R, 2¹⁶ or more
-    for the others. Raises ValueError when the quantities differ, or no part of their domains is
-    common.
+    The points are the judging points of the domain that all have in common. Raises ValueError when
+    the quantities differ, or no part of their domains is common.
     """
-    quantities = {table.quantity for _, table in labelled}
+    quantities = {entry.problem.name for _, entry in labelled}
     if len(quantities) != 1:
         raise ValueError(f"tables of different quantities: {', '.join(sorted(quantities))}")
-    forms: list[Form] = [form_of(table) for _, table in labelled]
-    domain = common_domain([type(form) for form in forms])
-    points, _ = off_grid_reference(domain)
-    values = [form_values(form, points) for form in forms]
-    errors = [judge(form, domain) for form in forms]
-    entries = tuple(
-        Entry(label, table, e, e.rms / errors[0].rms, e.largest / errors[0].largest)
-        for (label, table), e in zip(labelled, errors, strict=True)
+    fitted = [entry.require_fitted() for _, entry in labelled]
+    domain = common_domain([each.form for each in fitted])
+    points, _ = judging_points(domain)
+    values = [form_values(each, points) for each in fitted]
+    errors = [judge(each, domain) for each in fitted]
+    contestants = tuple(
+        Contestant(
+            label,
+            entry.require_table(),
+            e,
+            e.rms / errors[0].rms,
+            e.largest / errors[0].largest,
+        )
+        for (label, entry), e in zip(labelled, errors, strict=True)
     )
     apart = measure(values[-1] - values[0], points, domain)
-    return Comparison(quantities.pop(), domain, entries, apart.largest, apart.where)
+    return Comparison(quantities.pop(), domain, contestants, apart.largest, apart.where)
 
 
 def as_json(comparison: Comparison) -> dict:
-    """Give a comparison as plain JSON values, coefficients included."""
+    """Return a comparison as plain JSON values, coefficients included."""
     return {
         "quantity": comparison.quantity,
         "domain": {axis.name: [axis.lower, axis.upper] for axis in comparison.domain.axes},
-        "points": comparison.entries[0].errors.points,
+        "points": comparison.contestants[0].errors.points,
         "tables": [
             {
-                "table": entry.label,
-                "form": entry.table.form,
-                "equation": entry.table.equation,
-                "rms": entry.errors.rms,
-                "max": entry.errors.largest,
-                "where": entry.errors.where,
-                "rms_ratio": entry.rms_ratio,
-                "max_ratio": entry.largest_ratio,
-                "coefficients": entry.table.coefficients,
+                "table": each.label,
+                "form": each.table.form,
+                "equation": each.table.equation,
+                "rms": each.errors.rms,
+                "max": each.errors.largest,
+                "where": each.errors.where,
+                "rms_ratio": each.rms_ratio,
+                "max_ratio": each.largest_ratio,
+                "coefficients": each.table.coefficients,
             }
-            for entry in comparison.entries
+            for each in comparison.contestants
         ],
-        "coefficient_names": comparison.entries[0].table.coefficient_names,
+        "coefficient_names": comparison.contestants[0].table.coefficient_names,
         "largest_difference": {"value": comparison.difference, "where": comparison.where},
     }
 
 
 def coefficient_rows(comparison: Comparison) -> list[tuple[str, list[float]]]:
-    """Give every coefficient's name and its value in each table, for tables of one form."""
-    names = np.ravel(np.array(comparison.entries[0].table.coefficient_names, dtype=object))
-    columns = [np.ravel(entry.table.coefficients) for entry in comparison.entries]
+    """Return the name of every coefficient and its value in each table, for tables of one form."""
+    first = comparison.contestants[0].table
+    names = np.ravel(np.array(first.coefficient_names, dtype=object))
+    columns = [np.ravel(each.table.coefficients) for each in comparison.contestants]
     return [(str(name), [float(c[i]) for c in columns]) for i, name in enumerate(names)]

@@ -164,7 +164,7 @@ class Table(_Part):
 
     schema_: Literal["shadefit.table/1"] = Field(alias="schema")
     name: Name
-    quantity: Literal["ps", "g", "q", "r", "velvet"]
+    quantity: Name
     form: Name
     shape: Shape | None = None
     equation: Text

@@ -1,28 +1,17 @@
-"""How far a form is from its integral on a set of points."""
+"""How far a form is from the exact values on a set of points."""
 
 import functools
 from dataclasses import dataclass
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
-from fitting.form import Form, box_of
+from fitting.form import FittedForm, Form
 from fitting.points.domain import Domain
-from fitting.points.grids import off_grid_points
-from fitting.points.scattered import COUNTS, spread_points
-from integrals import INTEGRALS, Axis, Estimate, Integral
+from fitting.points.scattered import OFF_GRID_SEED, checking_points, judging_points
+from integrals.reference import Axis, box_of, in_batches
 
-OFF_GRID_SEED = 20200717
-# 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/test_errors.py); 96² for lower α.
-R_NODES, R_NODES_LOW_ALPHA, R_ALPHA = 32, 96, 0.15
-# Points that are evaluated at once.
-CHUNK = 8192
-CHUNK_OF_R = 64
-# From the worst point of each cell, so many along each side of the domain, larger errors are sought
-# at these parts of the sides.
-CELLS = 4
-RADII = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
+_BATCH = 8192
 
 
 @dataclass(frozen=True)
@@ -35,55 +24,83 @@ class Errors:
     points: int
 
 
-def exact_values(integral: Integral, points: np.ndarray) -> np.ndarray:
-    """Evaluate the integral's reference leg at points (n, axes)."""
-    return np.asarray(exact_estimates(integral, points).value)
+@dataclass(frozen=True)
+class HillClimbing:
+    """A search for larger errors, starting at the worst point of each of `cells`ⁿ cells.
+
+    In each round the best points are perturbed by normal steps of these `radii`, as fractions of
+    the domain: the largest error may be on a ridge that few points are on. `steps` bounds the
+    number of points that are tried in a round.
+    """
+
+    cells: int = 4
+    radii: tuple[float, ...] = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
+    steps: int = 8192
+
+    def __call__(
+        self, size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], seed: int
+    ) -> np.ndarray:
+        """Return points (cells, axes) of larger `size`, one from each cell that holds points.
+
+        `size` maps points (m, axes) to sizes (m,), and `sizes` are those of `points` (n, axes).
+        """
+        lower, upper = box_of(axes).T
+        rng = np.random.default_rng(seed)
+        cells = np.ravel_multi_index(
+            np.minimum(
+                self.cells * (points - lower) / (upper - lower), self.cells - 1
+            ).astype(int).T,
+            (self.cells,) * len(axes),
+        )  # fmt: skip
+        order = np.argsort(sizes)
+        worst = np.full(self.cells ** len(axes), -1)
+        worst[cells[order]] = order
+        best = points[worst[worst >= 0]]
+        for radius in self.radii:
+            steps = rng.normal(size=(self.steps // len(best), *best.shape)) * radius
+            steps = steps * (upper - lower)
+            steps[0] = 0
+            tried = np.clip(best + steps, lower, upper)
+            found = np.argmax(size(tried.reshape(-1, len(axes))).reshape(tried.shape[:2]), axis=0)
+            best = tried[found, np.arange(len(best))]
+        return best
 
 
-def exact_estimates(integral: Integral, points: np.ndarray) -> Estimate:
-    """Evaluate the same with the error that the leg states, both (n,)."""
-    if integral.name != "r":
-        return in_chunks(functools.partial(_estimates, integral.name), points, CHUNK)
-    nodes = R_NODES if np.min(points[:, 0]) >= R_ALPHA else R_NODES_LOW_ALPHA
-    return in_chunks(functools.partial(_estimates, "r", nodes=nodes), points, CHUNK_OF_R)
+climb = HillClimbing()
 
 
-def form_values(form: Form, points: np.ndarray) -> np.ndarray:
-    """Evaluate a form at points (n, axes)."""
-    return np.asarray(in_chunks(functools.partial(_apply, form), points, CHUNK))
+def form_values(fitted: FittedForm, points: np.ndarray) -> np.ndarray:
+    """Evaluate a form at points (n, axes): (n,)."""
+    return np.asarray(in_batches(functools.partial(_apply, fitted), points, _BATCH))
 
 
 def measure(
-    difference: np.ndarray, points: np.ndarray, domain: type[Form] | Domain, weights=None
+    difference: np.ndarray, points: np.ndarray, domain: Form | Domain, weights=None
 ) -> Errors:
-    """Sum up the differences (n,) between a form and its integral at points (n, axes)."""
+    """Sum up the differences (n,) between a form and the exact values at points (n, axes)."""
     worst = int(np.argmax(np.abs(difference)))
     where = {axis.name: float(x) for axis, x in zip(domain.axes, points[worst], strict=True)}
     rms = float(np.sqrt(np.average(difference**2, weights=weights)))
     return Errors(rms, float(np.abs(difference[worst])), where, len(points))
 
 
-def off_grid_errors(form: Form) -> Errors:
-    """Measure a form on points that no fit sees: see `judge`."""
-    return judge(form, type(form))
-
-
-def judge(form: Form, domain: type[Form] | Domain) -> Errors:
-    """Measure a form on a domain: its own, another form's, or what they have in common.
+def judge(fitted: FittedForm, domain: Form | Domain | None = None) -> Errors:
+    """Measure a form on points that no fit sees, of its own domain or of another.
 
     The rms error is over scrambled Sobol' points. The largest is over these, over points on faces,
-    edges and corners of the domain and where the integral is steep, and uphill from the worst.
+    edges and corners of the domain and where the quantity is steep, and over what hill climbing
+    finds from there.
     """
-    points, exact = off_grid_reference(domain)
-    inside = measure(form_values(form, points) - exact, points, domain)
-    points, exact = check_reference(domain, OFF_GRID_SEED)
-    difference = form_values(form, points) - exact
-    outside = measure(difference, points, domain)
-    found = [inside, outside]
-    if COUNTS[domain.integral.name].climbs:
+    domain = fitted.form if domain is None else domain
+    points, exact = judging_points(domain)
+    inside = measure(form_values(fitted, points) - exact, points, domain)
+    points, exact = checking_points(domain, OFF_GRID_SEED)
+    difference = form_values(fitted, points) - exact
+    found = [inside, measure(difference, points, domain)]
+    if domain.reference.sampling.climbs:
 
         def error(x: np.ndarray) -> np.ndarray:
-            return form_values(form, x) - exact_values(domain.integral, x)
+            return form_values(fitted, x) - domain.reference.values(x)
 
         top = climb(
             lambda x: np.abs(error(x)), points, np.abs(difference), domain.axes, OFF_GRID_SEED
@@ -93,68 +110,6 @@ def judge(form: Form, domain: type[Form] | Domain) -> Errors:
     return Errors(inside.rms, worst.largest, worst.where, inside.points)
 
 
-def climb(size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], seed: int):
-    """Give points (cells, axes) of larger `size`, each near a cell's worst of points (n, axes).
-
-    `size` gives those (m,) of points (m, axes), and `sizes` are those of `points`. The largest
-    error may be on a ridge that few points are on: it is sought nearer to them in every round.
-    """
-    lower, upper = box_of(axes).T
-    rng = np.random.default_rng(seed)
-    cells = np.ravel_multi_index(
-        np.minimum(CELLS * (points - lower) / (upper - lower), CELLS - 1).astype(int).T,
-        (CELLS,) * len(axes),
-    )
-    order = np.argsort(sizes)
-    worst = np.full(CELLS ** len(axes), -1)
-    worst[cells[order]] = order
-    best = points[worst[worst >= 0]]
-    for radius in RADII:
-        steps = rng.normal(size=(CHUNK // len(best), *best.shape)) * radius * (upper - lower)
-        steps[0] = 0
-        tried = np.clip(best + steps, lower, upper)
-        found = np.argmax(size(tried.reshape(-1, len(axes))).reshape(tried.shape[:2]), axis=0)
-        best = tried[found, np.arange(len(best))]
-    return best
-
-
-def off_grid_reference(domain: type[Form] | Domain) -> tuple[np.ndarray, np.ndarray]:
-    """Give the off-grid points (n, axes) of a form's domain and the exact values (n,) there."""
-    return _off_grid(domain.integral.name, domain.axes)
-
-
-@functools.lru_cache(maxsize=16)
-def _off_grid(name: str, axes: tuple[Axis, ...]) -> tuple[np.ndarray, np.ndarray]:
-    points = off_grid_points(axes, COUNTS[name].judged, OFF_GRID_SEED)
-    return points, exact_values(INTEGRALS[name], points)
-
-
-def in_chunks(function, points: np.ndarray, chunk: int):
-    """Apply a function of (chunk, axes) to points (n, axes): it is compiled once for any n."""
-    count = len(points)
-    padded = np.concatenate([points, np.repeat(points[-1:], -count % chunk, axis=0)])
-    parts = [function(padded[first : first + chunk]) for first in range(0, count, chunk)]
-    return jax.tree.map(lambda *each: jnp.asarray(np.concatenate(each)[:count]), *parts)
-
-
-def check_reference(domain: type[Form] | Domain, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Give points (n, axes) all over a form's domain, its boundary included, and exact values."""
-    return _check(domain.integral.name, domain.axes, seed)
-
-
-@functools.lru_cache(maxsize=16)
-def _check(name: str, axes: tuple[Axis, ...], seed: int) -> tuple[np.ndarray, np.ndarray]:
-    points = spread_points(name, axes, COUNTS[name].checked, seed)
-    return points, exact_values(INTEGRALS[name], points)
-
-
-@functools.partial(jax.jit, static_argnums=0, static_argnames="nodes")
-def _estimates(name: str, points, **options) -> Estimate:
-    integral = INTEGRALS[name]
-    leg = integral.legs[integral.reference]
-    return jax.vmap(lambda x: leg(*x, **options))(points)
-
-
 @jax.jit
-def _apply(form: Form, points):
-    return jax.vmap(lambda x: form(*x))(points)
+def _apply(fitted: FittedForm, points):
+    return jax.vmap(lambda x: fitted(*x))(points)

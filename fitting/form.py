@@ -1,92 +1,147 @@
-"""What a form is: an approximant whose array leaves are its coefficients."""
+"""What a form is: a compact function with coefficients that stands for a quantity."""
 
-from abc import abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar
+from dataclasses import dataclass, field
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from integrals import Axis, Integral
+from integrals.reference import Axis, Reference
 from programs.function import Function, Parameter
 from programs.program import Program
 from programs.tracing.tracer import trace
 
 
-class Form(eqx.Module):
-    """An approximant of one integral; calling it evaluates one point.
+@dataclass(frozen=True)
+class Stage:
+    """One step in evaluating a form, and the line that describes it in exported code.
 
-    Concrete forms are final. `coefficients` is the only leaf; a
-    NumPy array makes them constants of a trace. `axes` are the integral's,
-    restricted to the domain that the form is fitted on, `equation` says where it is printed.
-    `shape` tells the members of a family of forms apart (fitting/families); the paper's have none.
+    The first stage is called with the coefficients and the values of its axes. The second is called
+    with the results of the first, and with the values of its own arguments.
     """
 
+    call: Callable[..., Any]
+    summary: str = ""
+
+
+@dataclass(frozen=True)
+class Proofs:
+    """How proofs see a form, where the form as it is evaluated is hard to bound.
+
+    All functions take the coefficients and a point of `axes` (None: the form's own).
+
+    * `value` is the form without the floors that keep rounding from dividing by zero.
+    * `margins` gives a tuple. If no element is negative anywhere, all values are in [0, 1].
+    * `positive` gives one number, which a fit keeps positive. None: the least divisor, radicand
+      and argument of a logarithm in the form's traced program.
+    * `below` takes the fitted form. It returns a lower bound of a quantity that is positive
+      only if no value of the form is above the exact one.
+
+    Branch and bound begins with the domain divided into `first_split` pieces along its first sides.
+    """
+
+    axes: tuple[Axis, ...] | None = None
+    value: Callable[..., Array] | None = None
+    margins: Callable[..., tuple[Array, ...]] | None = None
+    positive: Callable[..., Array] | None = None
+    below: Callable[["FittedForm"], float] | None = None
+    first_split: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """An approximant of one quantity: its function, without the values of its coefficients.
+
+    `axes` are the quantity's, restricted to the domain that the form is fitted on. `equation` says
+    where the form is printed, or what it is. `coefficient_names` may be nested, and gives the shape
+    of the coefficients. `shape` tells the members of a family apart; other forms have none.
+
+    A form has one stage; or two, where much of the work is shared by many points: then the first
+    takes the first `shared` axes, and `inputs` maps all axes' values to the second's arguments.
+
+    `starts` are coefficients that a fit may start from; none of them is a published table's.
+    `solver` fits the form on a grid; None stands for the general one. `has_least_error` says that a
+    lower bound of the largest error is sought where the form is a quotient of linear functions.
+    """
+
+    name: str
+    equation: str
+    reference: Reference
+    axes: tuple[Axis, ...]
+    coefficient_names: list
+    stages: tuple[Stage, ...]
+    shared: int = 0
+    inputs: Callable[..., tuple[Array, ...]] | None = None
+    starts: tuple[np.ndarray, ...] = ()
+    shape: dict[str, Any] | None = None
+    proofs: Proofs = field(default_factory=Proofs)
+    solver: Any = None
+    has_least_error: bool = True
+
+    @property
+    def coefficient_shape(self) -> tuple[int, ...]:
+        """The shape of the coefficients."""
+        return np.shape(self.coefficient_names)
+
+    @property
+    def size(self) -> int:
+        """How many coefficients there are."""
+        return int(np.size(self.coefficient_names))
+
+    def __call__(self, coefficients: Array | np.ndarray, *point) -> Array:
+        """Evaluate the form at one point, scalars in radians where the unit is so."""
+        if self.inputs is None:
+            return self.stages[0].call(coefficients, *point)
+        inputs = self.inputs(*point)
+        return self.stages[1].call(self.first(coefficients, *point[: self.shared]), *inputs)
+
+    def first(self, coefficients: Array | np.ndarray, *shared) -> Any:
+        """Evaluate the first stage at the axes that it takes."""
+        return self.stages[0].call(coefficients, *shared)
+
+    def fitted(self, coefficients: Array | np.ndarray) -> "FittedForm":
+        """Give the form with coefficients, in their shape or flat."""
+        return FittedForm(self, jnp.asarray(coefficients).reshape(self.coefficient_shape))
+
+
+class FittedForm(eqx.Module):
+    """A form with its coefficients, which are its only array leaf."""
+
+    form: Form = eqx.field(static=True)
     coefficients: Array | np.ndarray
 
-    name: ClassVar[str]
-    equation: ClassVar[str]
-    integral: ClassVar[Integral]
-    axes: ClassVar[tuple[Axis, ...]]
-    shape: ClassVar[dict[str, Any] | None] = None
+    def __call__(self, *point) -> Array:
+        """Evaluate the form at one point of its axes."""
+        return self.form(self.coefficients, *point)
 
-    @abstractmethod
-    def __call__(self, *arguments) -> Array:
-        """Evaluate the form at one point of its axes, scalars in radians where the unit is so."""
+    def first(self, *shared) -> Any:
+        """Evaluate the first stage at the axes that it takes."""
+        return self.form.first(self.coefficients, *shared)
 
-    @classmethod
-    @abstractmethod
-    def coefficient_names(cls) -> list:
-        """Name the coefficients, nested as they are."""
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The axes of the form."""
+        return self.form.axes
 
-    @classmethod
-    def starts(cls) -> list[np.ndarray]:
-        """Give coefficients to start a fit from; none of them is a published table's."""
-        return []
+    @property
+    def reference(self) -> Reference:
+        """The exact values that the form stands for."""
+        return self.form.reference
 
-    @classmethod
-    def linear_parts(cls, *arguments) -> tuple[Array, Array, Array, Array] | None:
-        """Give a₀, a, b₀, b with the form (a₀ + a·c)/(b₀ + b·c) at one point, if it is such."""
-        return None
-
-    def unguarded(self) -> tuple[Callable[..., Array], tuple[Axis, ...]]:
-        """Give a function that is the form, and its axes, for proofs that it has no pole.
-
-        It is without the floors that keep a denominator of the form from being zero.
-        """
-        return self, self.axes
-
-    def margins(self) -> tuple[Callable[..., tuple[Array, ...]], tuple[Axis, ...]] | None:
-        """Give what is nowhere negative only if all values are from 0 to 1, and its axes.
-
-        None where nothing is known that is easier to bound than the values themselves.
-        """
-        return None
-
-    def positive(self, *arguments) -> Array:
-        """Give what must stay positive at one point for the form to have no pole and no NaN."""
-        return jnp.ones(())
+    @property
+    def constants(self) -> np.ndarray:
+        """The coefficients as NumPy numbers, which a trace takes for constants."""
+        return np.asarray(self.coefficients, np.float64)
 
 
-def box_of(axes: tuple[Axis, ...]) -> np.ndarray:
-    """Give the ends (axes, 2) of a domain."""
-    return np.array([(axis.lower, axis.upper) for axis in axes])
-
-
-def as_program(form: Form) -> Program:
-    """Trace a form, its coefficients constants, as a function of its axes."""
-    return traced(form, constant(form), form.axes)
-
-
-def constant(form: Form) -> Form:
-    """Give the form with coefficients that are constants of a trace."""
-    return type(form)(np.asarray(form.coefficients))
-
-
-def traced(form: Form, call, axes: tuple[Axis, ...], results: int | None = None) -> Program:
+def traced(
+    fitted: FittedForm, call: Callable, axes: tuple[Axis, ...], results: int | None = None
+) -> Program:
     """Trace a function of a form on some axes: of a scalar, or of a tuple of `results`."""
     parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
-    summary = f"{form.integral.symbol} by {form.equation}"
-    return trace(Function(form.integral.name, summary, parameters, results, "value", call))
+    reference = fitted.reference
+    summary = f"{reference.symbol} by {fitted.form.equation}"
+    return trace(Function(reference.name, summary, parameters, results, "value", call))

@@ -1,21 +1,23 @@
-"""What a fit is to make small."""
+"""What a fit makes small, and the words for it."""
 
 from dataclasses import dataclass
-from typing import Literal
-
-from fitting.solvers.minimax import Side
+from typing import Literal, get_args
 
 Norm = Literal["l2", "linf"]
+Side = Literal["both", "below", "above"]
 Rounding = Literal["none", "float32", "float16"]
+NORMS: tuple[Norm, ...] = get_args(Norm)
+SIDES: tuple[Side, ...] = get_args(Side)
+ROUNDINGS: tuple[Rounding, ...] = get_args(Rounding)
 
 
 @dataclass(frozen=True)
 class Goal:
     """Least squares ('l2') or least largest error ('linf'), of the error or of the relative one.
 
-    `side` 'below' allows no value above the exact one: energy is lost, not created; it is for
-    'linf'. `rounding` is the precision that the coefficients are given in. A `bounded` fit has all
-    values between 0 and 1, and proven to be; it is for 'linf' too.
+    `side` 'below' allows no value above the exact one, so that energy is lost and not created; it
+    needs 'linf'. `rounding` is the precision that the coefficients are kept in. All values of a
+    `bounded` fit are between 0 and 1, and proven to be; it needs 'linf' too.
     """
 
     norm: Norm = "l2"

@@ -4,24 +4,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fitting.form import Form
-from integrals import Axis, Integral
+from integrals.reference import Axis, Reference
 
 
 @dataclass(frozen=True)
 class Domain:
-    """An integral, and its axes as far as they go."""
+    """A quantity's exact values, and the part of its axes that is looked at."""
 
-    integral: Integral
+    reference: Reference
     axes: tuple[Axis, ...]
 
 
-def common_domain(forms: Sequence[type[Form] | Domain]) -> Domain:
-    """Give the part of the axes that all forms (or domains) of one integral have in common.
+def common_domain(forms: Sequence[Form | Domain]) -> Domain:
+    """Return the part of the axes that all forms (or domains) of one quantity have in common.
 
     Raises ValueError where there is none.
     """
     sides = zip(*(form.axes for form in forms), strict=True)
-    return Domain(forms[0].integral, tuple(map(_common, sides)))
+    return Domain(forms[0].reference, tuple(map(_common, sides)))
 
 
 def _common(axes: tuple[Axis, ...]) -> Axis:

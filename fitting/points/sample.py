@@ -1,16 +1,14 @@
-"""Where forms are fitted to a goal: points of their domain with exact values."""
+"""The scattered points that a form is fitted to a goal on, with exact values and weights."""
 
 import functools
 from dataclasses import dataclass
 
 import numpy as np
 
-from fitting.errors import exact_estimates
 from fitting.form import Form
 from fitting.goal import LEAST_SQUARES, Goal
-from fitting.points.grids import Weight, measure_of_lights
-from fitting.points.scattered import COUNTS, spread_points
-from integrals import INTEGRALS, Axis, Estimate
+from fitting.points.scattered import scattered_points
+from integrals.reference import Axis, Estimate, Reference
 
 SEED = 20200819
 
@@ -19,7 +17,7 @@ SEED = 20200819
 class Sample:
     """Points (n, axes), exact values (n,), a bound on the error of these, and `scale` (n,).
 
-    `scale` is what errors are multiplied by before they are made small.
+    Errors are multiplied by `scale` before they are made small.
     """
 
     points: np.ndarray
@@ -28,7 +26,7 @@ class Sample:
     scale: np.ndarray
 
     def extended(self, other: "Sample") -> "Sample":
-        """Give this with the points of another."""
+        """Return this sample with the points of another one added."""
         return Sample(
             np.concatenate([self.points, other.points]),
             np.concatenate([self.exact, other.exact]),
@@ -37,40 +35,40 @@ class Sample:
         )
 
 
-def sample_of(form: type[Form], goal: Goal = LEAST_SQUARES, weight: Weight = "uniform") -> Sample:
-    """Give the points that a form is fitted on; `weight` is the measure of lights of P_s."""
-    name = form.integral.name
-    points = spread_points(name, form.axes, COUNTS[name].fitted, SEED)
-    return _sample(points, _estimates(name, form.axes), form, goal, weight)
+def sample_of(form: Form, goal: Goal = LEAST_SQUARES, measure: str = "uniform") -> Sample:
+    """Return the sample that a form is fitted on; `measure` names one of the quantity's measures."""
+    reference = form.reference
+    points = scattered_points(reference, form.axes, reference.sampling.fitted, SEED)
+    return _sample(points, _estimates(reference, form.axes), form, goal, measure)
 
 
-def sample_at(points: np.ndarray, form: type[Form], goal: Goal, weight: Weight) -> Sample:
-    """Give the sample of the same fit at other points."""
-    return _sample(points, exact_estimates(form.integral, points), form, goal, weight)
+def sample_at(points: np.ndarray, form: Form, goal: Goal, measure: str) -> Sample:
+    """Return a sample of the same fit at other points (n, axes)."""
+    return _sample(points, form.reference.estimates(points), form, goal, measure)
 
 
-def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, weight: Weight) -> Sample:
+def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, measure: str) -> Sample:
     exact, error = np.asarray(estimates.value), float(np.max(estimates.error))
-    return Sample(points, exact, error, scale_at(points, exact, form, goal, weight))
+    return Sample(points, exact, error, scale_at(points, exact, form, goal, measure))
 
 
 def scale_at(
-    points: np.ndarray, exact: np.ndarray, form: type[Form], goal: Goal, weight: Weight
+    points: np.ndarray, exact: np.ndarray, form: Form, goal: Goal, measure: str
 ) -> np.ndarray:
-    """Give what errors (n,) are multiplied by: a relative error's 1/|f|, and P_s's weight.
+    """Return what errors (n,) are multiplied by.
 
-    Squares are multiplied by the measure's density; the largest error knows no measure, and is
-    that of the light that arrives: with 'cosine' times cos θu, else as it is.
+    A relative error takes 1/|f|. A measure of the quantity multiplies squared errors by its
+    density, and the largest error by its own factor.
     """
+    chosen = form.reference.sampling.measures.get(measure)
     scale = 1 / np.abs(exact) if goal.relative else np.ones(len(exact))
-    if form.integral.name != "ps":
+    if chosen is None:
         return scale
-    theta_u = points[:, 2]
-    if goal.norm == "l2":
-        return scale * np.sqrt(measure_of_lights(theta_u, weight))
-    return scale * np.cos(theta_u) if weight == "cosine" else scale
+    factor = np.sqrt(chosen.density(points)) if goal.norm == "l2" else chosen.largest(points)
+    return scale * factor
 
 
 @functools.lru_cache(maxsize=16)
-def _estimates(name: str, axes: tuple[Axis, ...]) -> Estimate:
-    return exact_estimates(INTEGRALS[name], spread_points(name, axes, COUNTS[name].fitted, SEED))
+def _estimates(reference: Reference, axes: tuple[Axis, ...]) -> Estimate:
+    points = scattered_points(reference, axes, reference.sampling.fitted, SEED)
+    return reference.estimates(points)

@@ -1,67 +1,61 @@
-"""Points all over a domain: a largest error is as often on its boundary as inside.
+"""Points inside a domain, on its boundary, and where the quantity is steep, with exact values.
 
-G is steep as d and ν fall, and P_s about the fibre at the scale of α: there are more points there.
+A largest error is as often on the boundary of a domain as inside it.
 """
 
-from dataclasses import dataclass
+import functools
 
 import numpy as np
 
-from fitting.points.grids import off_grid_points
-from integrals import Axis
+from fitting.form import Form
+from fitting.points.domain import Domain
+from fitting.points.grids import sobol_points
+from integrals.reference import Axis, Reference, box_of
+
+OFF_GRID_SEED = 20200717
+# Scale points about the centre by this and clip: some land on faces.
+_STRETCH = 1.25
 
 
-@dataclass(frozen=True)
-class Counts:
-    """log₂ of how many points a quantity's forms are fitted on, checked at, and judged by.
+def scattered_points(
+    reference: Reference, axes: tuple[Axis, ...], exponent: int, seed: int
+) -> np.ndarray:
+    """Return points (n, axes): 2^exponent inside, half as many of which some lie on faces.
 
-    `spread_points` adds half as many on the faces. `climbs` says whether larger errors are sought
-    uphill from the worst: not of R, which is smooth in its two variables and dear.
+    They are spread along each axis by its scale. The quantity's `sampling.extra` adds further ones.
     """
-
-    fitted: int
-    checked: int
-    judged: int
-    climbs: bool = True
-
-
-COUNTS = {
-    "ps": Counts(fitted=13, checked=15, judged=17),
-    "g": Counts(fitted=13, checked=15, judged=16),
-    "q": Counts(fitted=11, checked=13, judged=16),
-    "r": Counts(fitted=11, checked=10, judged=12, climbs=False),
-    "velvet": Counts(fitted=11, checked=13, judged=16),
-}
-# Points that are stretched beyond the domain by this and put back lie on its faces.
-STRETCH = 1.25
-# P_s varies within this many α of the fibre's direction.
-RING = 5.0
+    lower, upper = box_of(axes).T
+    width = upper - lower
+    inside = (sobol_points(axes, exponent, seed) - lower) / width
+    faces = (sobol_points(axes, exponent - 1, seed + 1) - lower) / width
+    unit = np.concatenate([inside, np.clip((faces - 0.5) * _STRETCH + 0.5, 0, 1)])
+    points = np.stack([axis.place(unit[:, k]) for k, axis in enumerate(axes)], axis=1)
+    extra = reference.sampling.extra
+    return points if extra is None else np.concatenate([points, extra(points)])
 
 
-def spread_points(name: str, axes: tuple[Axis, ...], exponent: int, seed: int) -> np.ndarray:
-    """Give 2^exponent points inside a domain, half as many on its faces, and where it is steep."""
-    lower = np.array([axis.lower for axis in axes])
-    width = np.array([axis.upper for axis in axes]) - lower
-    inside = (off_grid_points(axes, exponent, seed) - lower) / width
-    faces = (off_grid_points(axes, exponent - 1, seed + 1) - lower) / width
-    unit = np.concatenate([inside, np.clip((faces - 0.5) * STRETCH + 0.5, 0, 1)])
-    if name == "g":
-        # Even in the logarithms of d and ν.
-        return lower * (1 + width / lower) ** unit
-    if name == "q":
-        unit = unit**2
-    points = lower + width * unit
-    return np.concatenate([points, _rings(points)]) if name == "ps" else points
+def judging_points(domain: Form | Domain) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points (n, axes) that judge a form's rms error, and the exact values (n,).
+
+    They are uniform in the domain, and no fit sees them.
+    """
+    return _judging(domain.reference, domain.axes)
 
 
-def _rings(points: np.ndarray) -> np.ndarray:
-    """Move the lights of points (α, θf, θu, φ) to within RING α of the fibre, above the surface."""
-    alpha, theta_f, theta_u, phi = points.T
-    distance = RING * alpha * (theta_u / (np.pi / 2)) ** 1.5
-    fibre = np.stack([np.sin(theta_f), 0 * theta_f, np.cos(theta_f)])
-    across = np.stack([np.cos(theta_f), 0 * theta_f, -np.sin(theta_f)])
-    side = np.array([0.0, 1.0, 0.0])[:, None]
-    around = np.cos(phi) * across + np.sin(phi) * side
-    x, y, z = np.cos(distance) * fibre + np.sin(distance) * around
-    theta = np.arctan2(np.hypot(x, y), np.maximum(z, 0))
-    return np.stack([alpha, theta_f, np.minimum(theta, np.pi / 2), np.arctan2(y, x)], axis=1)
+def checking_points(domain: Form | Domain, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return scattered points (n, axes) where the largest error is looked for, and exact values."""
+    return _checking(domain.reference, domain.axes, seed)
+
+
+@functools.lru_cache(maxsize=16)
+def _judging(reference: Reference, axes: tuple[Axis, ...]) -> tuple[np.ndarray, np.ndarray]:
+    points = sobol_points(axes, reference.sampling.judged, OFF_GRID_SEED)
+    return points, reference.values(points)
+
+
+@functools.lru_cache(maxsize=16)
+def _checking(
+    reference: Reference, axes: tuple[Axis, ...], seed: int
+) -> tuple[np.ndarray, np.ndarray]:
+    points = scattered_points(reference, axes, reference.sampling.checked, seed)
+    return points, reference.values(points)

@@ -1,42 +1,61 @@
-"""Bounds of a form's values: the integrals are fractions, and so should be what stands for them."""
+"""Proof that a form's values are between 0 and 1, as those of the fraction it stands for."""
 
 import numpy as np
 
-from fitting.form import Form, as_program, box_of, constant, traced
-from fitting.points.scattered import spread_points
-from fitting.proofs.pole_proof import NOWHERE_NEGATIVE, within
+from fitting.form import FittedForm, traced
+from fitting.points.scattered import scattered_points
+from fitting.proofs.pole_proof import proof_axes
+from integrals.reference import box_of
 from programs.bounding.branch_and_bound import Bounds, bound_output
+from programs.bounding.denominators import NOWHERE_NEGATIVE, within
 
 # Bounds are within this of values that are attained.
 TIGHTNESS = 1e-3
-# Bounds are rounded outwards at each step: a form that is one somewhere has a bound above it.
+# Every step is rounded outwards: a form that attains 1 has a bound slightly above 1.
 ROUNDING = 1e-12
 FRACTIONS = (-ROUNDING, 1 + ROUNDING)
-# log₂ of the number of points that are tried first: a form that leaves [0, 1] often does so there.
+# The base-2 logarithm of how many points are tried first: a form that leaves [0, 1] often does so
+# at one of them, and then no proof is attempted.
 PROBES = 12
 
 
-def certify_range(form: Form, tightness: float = TIGHTNESS) -> Bounds | None:
+def certify_range(fitted: FittedForm, tightness: float = TIGHTNESS) -> Bounds | None:
     """Prove that all values of a form lie between 0 and 1; None where that is not shown.
 
-    Of a form that gives its margins these are shown not to be negative; the bounds are 0 and 1. Of
-    others the values are bounded, to within `tightness` of what is attained. The form is one whose
-    denominators are certified.
+    If the form declares margins, these are shown not to be negative, and the bounds are 0 and 1.
+    Otherwise the values are bounded, to within `tightness` of what is attained. The denominators
+    of the form must be certified before.
     """
-    margins = constant(form).margins()
-    if margins is None:
-        points = spread_points(form.integral.name, form.axes, PROBES, PROBES)
+    form, constants = fitted.form, fitted.constants
+    if form.proofs.margins is not None:
+        return _by_margins(fitted)
+    points = scattered_points(form.reference, form.axes, PROBES, PROBES)
 
-        def settled(below, above, least, most):
-            low, high = max(FRACTIONS[0], least - tightness), min(FRACTIONS[1], most + tightness)
-            return (below >= low) & (above <= high)
+    def settled(below, above, least, most):
+        low, high = max(FRACTIONS[0], least - tightness), min(FRACTIONS[1], most + tightness)
+        return (below >= low) & (above <= high)
 
-        found = bound_output(as_program(form), box_of(form.axes), FRACTIONS, settled, points)
-        return found if np.isfinite(found.lower) else None
-    call, axes = margins
-    count, boxes = len(call(*(axis.lower for axis in axes))), 0
-    for program in (traced(form, lambda *x, k=k: call(*x)[k], axes) for k in range(count)):
-        found = bound_output(program, box_of(axes), NOWHERE_NEGATIVE, within(NOWHERE_NEGATIVE))
+    program = traced(fitted, lambda *point: form(constants, *point), form.axes)
+    split = form.proofs.first_split
+    found = bound_output(
+        program, box_of(form.axes), FRACTIONS, settled, points, first_split=split
+    )
+    return found if np.isfinite(found.lower) else None
+
+
+def _by_margins(fitted: FittedForm) -> Bounds | None:
+    margins, constants, axes = fitted.form.proofs.margins, fitted.constants, proof_axes(fitted.form)
+    assert margins is not None
+    count, boxes = len(margins(constants, *(axis.lower for axis in axes))), 0
+    for k in range(count):
+        program = traced(fitted, lambda *point, k=k: margins(constants, *point)[k], axes)
+        found = bound_output(
+            program,
+            box_of(axes),
+            NOWHERE_NEGATIVE,
+            within(NOWHERE_NEGATIVE),
+            first_split=fitted.form.proofs.first_split,
+        )
         if not np.isfinite(found.lower):
             return None
         boxes += found.boxes

@@ -12,7 +12,7 @@ Residual = Callable[[Array], Array]
 
 
 def solve_linear(matrix: Array, values: Array) -> Array:
-    """Give the z (n,) that minimises |matrix z − values|², matrix (m, n), m ≥ n, by QR.
+    """Return the z (n,) that minimises |matrix z − values|², matrix (m, n), m ≥ n, by QR.
 
     Several columns of values (m, k) give as many of z (n, k).
     """
@@ -26,7 +26,7 @@ def solve_nonlinear(
 ) -> Array:
     """Minimise |residual(z)|² from `start` (n,) by Optimistix's Levenberg–Marquardt.
 
-    Stops at a change below `atol` and a relative one below `rtol`, or after `steps`; judge the
+    It stops at a change below `atol` and a relative one below `rtol`, or after `steps`. Judge the
     result by its residual, not by the solver's word.
     """
     solver = optx.LevenbergMarquardt(rtol=rtol, atol=atol, linear_solver=lx.Normal(lx.Cholesky()))

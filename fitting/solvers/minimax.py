@@ -1,54 +1,38 @@
-"""The least largest error, by linear programs: exact where a form is linear in its coefficients.
+"""The least largest error, by a sequence of linear programs.
 
-For a form that is not, each program is that of the form's tangent, within a trust region, and the
-result is a minimum among its neighbours. Where a form is a quotient of linear functions, a bound
-tells how far from the least of all it may be: whether an error can be had at all is a linear
-program (`lower_bound`).
+Each program is that of the form's tangent, within a trust region. Where a form is linear in its
+coefficients, the tangent is the form; elsewhere the result is a minimum among its neighbours.
 """
 
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import jax
 import numpy as np
 from jax import Array
 from scipy.optimize import linprog
 
-from fitting.errors import in_chunks
 from fitting.form import Form
+from fitting.goal import Side
+from fitting.linearity import positive_of
+from integrals.reference import in_batches
 
-Side = Literal["both", "below", "above"]
-
-# Rows of a program: the worst points, this many and so many more a coefficient.
-ROWS, ROWS_A_COEFFICIENT = 300, 15
-# Points and rows that are evaluated at once.
-CHUNK, CHUNK_OF_ROWS = 4096, 512
-TRUST = 0.3
-LEAST_TRUST = 1e-6
-# Programs that gain less than this part of the error are not followed by many more.
-WORTHWHILE = 1e-4
-PATIENCE = 4
-# A bound is sought at these parts of the error that was found, on this many of the points.
-BOUND_LEVELS = (0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)
-BOUND_ROWS = 500
-INFEASIBLE = 2  # linprog's status
-# What is on the wrong side counts this many times in a program, so that a start may be there, and
-# this many when points and steps are chosen.
-OVER, WRONG = 100.0, 1e5
+# Points, and points with derivatives, that are evaluated at once.
+_BATCH, _BATCH_OF_SLOPES = 4096, 512
 # Bounded values are kept this far from 0 and 1 at the points.
-ROOM = 1e-3
-# What must stay positive is kept above this at the points.
-FLOOR = 1e-3
+_ROOM = 1e-3
+# An error on the wrong side counts this many times when points and steps are chosen.
+_WRONG = 1e5
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """What is made small: `values` (n,) of coefficients, `slopes` (n, m) at rows; and `positive`.
+    """The weighted errors that are made small, as functions of the free coefficients (m,).
 
-    `positive` and `positive_slopes` are the same for what must stay above FLOOR. `least` and `most`
-    (n,) are the lowest and the highest `values` that are allowed.
+    `values` gives errors (n,), `slopes` their derivatives (rows, m) at some rows. `positive` and
+    `positive_slopes` are the same for what the form keeps positive. `least` and `most` (n,) are
+    the lowest and the highest errors that are allowed.
     """
 
     values: Callable[[np.ndarray], np.ndarray]
@@ -60,46 +44,48 @@ class Residuals:
 
 
 def residuals(
-    form: type[Form],
+    form: Form,
     points: np.ndarray,
     exact: np.ndarray,
     scale: np.ndarray,
+    free: np.ndarray,
     fixed: np.ndarray,
     bounded: bool = False,
 ) -> Residuals:
-    """Give the weighted errors of a form's free coefficients; `fixed` (m,) has NaN for those.
+    """Return the weighted errors of a form as functions of its free coefficients.
 
+    `free` (m,) tells which coefficients are free; the others have their values in `fixed` (m,).
     `bounded` allows no value of the form below 0 or above 1, with some room to either.
     """
-    free = np.isnan(fixed)
 
-    def at(function, z, x, chunk):
+    def at(function, z, x, batch):
         whole = fixed.copy()
         whole[free] = z
-        return np.asarray(in_chunks(functools.partial(function, form, whole), x, chunk))
+        return np.asarray(in_batches(functools.partial(function, form, whole), x, batch))
 
     # No more room than half of what the exact value leaves: it may be 0 or 1.
-    low, high = np.minimum(ROOM, exact / 2), 1 - np.minimum(ROOM, (1 - exact) / 2)
+    low, high = np.minimum(_ROOM, exact / 2), 1 - np.minimum(_ROOM, (1 - exact) / 2)
     least, most = (
         (end - exact) * scale if bounded else np.full(len(exact), limit)
         for end, limit in ((low, -np.inf), (high, np.inf))
     )
     return Residuals(
-        lambda z: (at(_values, z, points, CHUNK) - exact) * scale,
-        lambda z, rows: at(_slopes, z, points[rows], CHUNK_OF_ROWS)[:, free] * scale[rows, None],
-        lambda z: at(_rooms, z, points, CHUNK),
-        lambda z, rows: at(_room_slopes, z, points[rows], CHUNK_OF_ROWS)[:, free],
+        lambda z: (at(_values, z, points, _BATCH) - exact) * scale,
+        lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free]
+        * scale[rows, None],
+        lambda z: at(_rooms, z, points, _BATCH),
+        lambda z, rows: at(_room_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free],
         least,
         most,
     )
 
 
-def _value(form: type[Form], c: Array, point: Array) -> Array:
-    return form(c.reshape(np.shape(form.coefficient_names())))(*point)
+def _value(form: Form, c: Array, point: Array) -> Array:
+    return form(c.reshape(form.coefficient_shape), *point)
 
 
-def _room(form: type[Form], c: Array, point: Array) -> Array:
-    return form(c.reshape(np.shape(form.coefficient_names()))).positive(*point)
+def _room(form: Form, c: Array, point: Array) -> Array:
+    return positive_of(form)(c.reshape(form.coefficient_shape), *point)
 
 
 def _at_points(function):
@@ -113,44 +99,96 @@ _values, _rooms = _at_points(_value), _at_points(_room)
 _slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_room, 1))
 
 
-def minimise_largest(
-    problem: Residuals, start: np.ndarray, side: Side = "both", programs: int = 30
-) -> np.ndarray:
-    """Give coefficients (m,) whose largest error is least; `side` 'below' allows none above zero.
+@dataclass(frozen=True)
+class Minimax:
+    """The solver of the least largest error, and what tunes it.
 
-    `side` is 'both', 'below' (every error ≤ 0 at the points) or 'above'.
+    * `programs`: at most so many linear programs.
+    * `rows`, `rows_a_coefficient`: each program has the worst points, this many and so many more
+      a coefficient.
+    * `trust`, `least_trust`: the first step may change a coefficient by this part; the search ends
+      when the trust region is smaller than the second.
+    * `worthwhile`, `patience`: programs that lower the error by less than this part are idle; the
+      search ends after so many idle ones.
+    * `over`: a slack on what is not allowed costs this much in a program, so that a start may be
+      on the wrong side.
+    * `floor`: what must stay positive is kept above this at the points.
     """
-    best = np.asarray(start, float)
-    if not len(best):
+
+    programs: int = 30
+    rows: int = 300
+    rows_a_coefficient: int = 15
+    trust: float = 0.3
+    least_trust: float = 1e-6
+    worthwhile: float = 1e-4
+    patience: int = 4
+    over: float = 100.0
+    floor: float = 1e-3
+
+    def __call__(self, problem: Residuals, start: np.ndarray, side: Side = "both") -> np.ndarray:
+        """Return coefficients (m,) whose largest error is least.
+
+        `side` is 'both', 'below' (every error ≤ 0 at the points) or 'above'.
+        """
+        best = np.asarray(start, float)
+        if not len(best):
+            return best
+        error, allowed = problem.values(best), limits(problem, side)
+        least, trust, idle = badness(error, *allowed).max(), self.trust, 0.0
+        count = self.rows + self.rows_a_coefficient * len(best)
+        kept = np.zeros(len(error), bool)
+        for _ in range(self.programs):
+            kept |= largest_of(badness(error, *allowed), count)
+            if kept.sum() > 3 * count:
+                kept = largest_of(badness(error, *allowed), count)
+            rows = np.nonzero(kept)[0]
+            trial = best + self._step(problem, best, error, rows, allowed, trust)
+            tried = problem.values(trial)
+            good = problem.positive(trial).min() > 0
+            value = badness(tried, *allowed).max() if good else np.inf
+            if value < least * (1 - 1e-9):
+                idle = 0.0 if value < least * (1 - self.worthwhile) else idle + 1
+                best, error, least = trial, tried, value
+                trust = min(2 * trust, 3.0)
+            else:
+                if np.isfinite(tried).all():
+                    kept |= largest_of(badness(tried, *allowed), 50)
+                trust, idle = trust / 3, idle + 0.5
+            if trust < self.least_trust or idle >= self.patience:
+                break
         return best
-    error, allowed = problem.values(best), limits(problem, side)
-    least, trust, idle = badness(error, *allowed).max(), TRUST, 0.0
-    count = ROWS + ROWS_A_COEFFICIENT * len(best)
-    kept = np.zeros(len(error), bool)
-    for _ in range(programs):
-        kept |= _worst(badness(error, *allowed), count)
-        if kept.sum() > 3 * count:
-            kept = _worst(badness(error, *allowed), count)
-        rows = np.nonzero(kept)[0]
-        step = _program(problem, best, error, rows, allowed, trust)
-        trial = best + step
-        tried = problem.values(trial)
-        value = badness(tried, *allowed).max() if problem.positive(trial).min() > 0 else np.inf
-        if value < least * (1 - 1e-9):
-            idle = 0.0 if value < least * (1 - WORTHWHILE) else idle + 1
-            best, error, least = trial, tried, value
-            trust = min(2 * trust, 3.0)
-        else:
-            if np.isfinite(tried).all():
-                kept |= _worst(badness(tried, *allowed), 50)
-            trust, idle = trust / 3, idle + 0.5
-        if trust < LEAST_TRUST or idle >= PATIENCE:
-            break
-    return best
+
+    def _step(self, problem, z, error, rows, allowed, trust) -> np.ndarray:
+        """Solve the tangent's program: the step (m,) that makes the largest linear error least."""
+        slopes, values = problem.slopes(z, rows), error[rows]
+        room = problem.positive(z)
+        low = largest_of(-room, self.rows)
+        guard = problem.positive_slopes(z, np.nonzero(low)[0])
+        spare = room[low] - self.floor
+        held = np.any(guard != 0, axis=1)
+        guard, spare = guard[held], np.maximum(spare[held], 0.0)
+        unit = 1 / np.maximum(np.abs(slopes).max(axis=0), 1e-12)
+        radius = trust * np.maximum(np.abs(z), 0.05) / unit
+        # t bounds the size of every error. What is not allowed is bounded by a slack s, which costs
+        # so much that it is zero wherever it can be. Where a whole side is not allowed, t does not
+        # bound it.
+        least, most = (each[rows] for each in allowed)
+        parts = [
+            _rows(slopes * unit, -values, most > 0, 0),
+            _rows(-slopes * unit, values, least < 0, 0),
+            _rows(slopes * unit, most - values, np.isfinite(most), 1),
+            _rows(-slopes * unit, values - least, np.isfinite(least), 1),
+            _rows(-guard * unit, spare, np.full(len(guard), True), None),
+        ]
+        matrix, limit = (np.concatenate(each) for each in zip(*parts, strict=True))
+        bounds = [(-r, r) for r in radius] + [(0, None)] * 2
+        cost = np.concatenate([np.zeros(len(z)), [1.0, self.over]])
+        solved = linprog(cost, matrix, limit, bounds=bounds)
+        return solved.x[:-2] * unit if solved.success else np.zeros(len(z))
 
 
 def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
-    """Give the lowest and the highest errors (n,) that are allowed, with those of a side."""
+    """Return the lowest and the highest errors (n,) that the problem and a side allow."""
     return (
         np.maximum(problem.least, 0) if side == "above" else problem.least,
         np.minimum(problem.most, 0) if side == "below" else problem.most,
@@ -158,90 +196,22 @@ def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
 
 
 def badness(error: np.ndarray, least: np.ndarray, most: np.ndarray) -> np.ndarray:
-    """Give the size of each error, larger where it is not allowed; ∞ where it is NaN."""
-    bad = np.abs(error) + WRONG * np.maximum(np.maximum(error - most, least - error), 0)
+    """Return the size of each error, larger where it is not allowed; ∞ where it is NaN."""
+    bad = np.abs(error) + _WRONG * np.maximum(np.maximum(error - most, least - error), 0)
     return np.where(np.isfinite(bad), bad, np.inf)
 
 
-def _worst(size: np.ndarray, count: int) -> np.ndarray:
+def largest_of(size: np.ndarray, count: int) -> np.ndarray:
+    """Return a mask (n,) of the `count` largest of sizes (n,)."""
     chosen = np.zeros(len(size), bool)
     count = min(count, len(size))
     chosen[np.argpartition(-size, count - 1)[:count]] = True
     return chosen
 
 
-def _program(problem, z, error, rows, allowed, trust) -> np.ndarray:
-    """Solve the tangent's program: the step (m,) that makes the largest linear error least."""
-    slopes, values = problem.slopes(z, rows), error[rows]
-    room = problem.positive(z)
-    low = _worst(-room, ROWS)
-    guard, spare = problem.positive_slopes(z, np.nonzero(low)[0]), room[low] - FLOOR
-    held = np.any(guard != 0, axis=1)
-    guard, spare = guard[held], np.maximum(spare[held], 0.0)
-    unit = 1 / np.maximum(np.abs(slopes).max(axis=0), 1e-12)
-    radius = trust * np.maximum(np.abs(z), 0.05) / unit
-    # t bounds the size of every error. What is not allowed is bounded by a slack s, which costs so
-    # much that it is zero wherever it can be; where that is all of a side, t has nothing to add.
-    least, most = (each[rows] for each in allowed)
-    parts = [
-        _rows(slopes * unit, -values, most > 0, 0),
-        _rows(-slopes * unit, values, least < 0, 0),
-        _rows(slopes * unit, most - values, np.isfinite(most), 1),
-        _rows(-slopes * unit, values - least, np.isfinite(least), 1),
-        _rows(-guard * unit, spare, np.full(len(guard), True), None),
-    ]
-    matrix, limit = (np.concatenate(each) for each in zip(*parts, strict=True))
-    bounds = [(-r, r) for r in radius] + [(0, None)] * 2
-    cost = np.concatenate([np.zeros(len(z)), [1.0, OVER]])
-    solved = linprog(cost, matrix, limit, bounds=bounds)
-    return solved.x[:-2] * unit if solved.success else np.zeros(len(z))
-
-
 def _rows(matrix, limit, some, column) -> tuple[np.ndarray, np.ndarray]:
-    """Give some rows of matrix·z ≤ limit, the right side raised by the variable of a column."""
+    """Return some rows of matrix·z ≤ limit, the right side raised by the variable of a column."""
     raised = np.zeros((int(some.sum()), 2))
     if column is not None:
         raised[:, column] = -1
     return np.hstack([matrix[some], raised]), limit[some]
-
-
-def lower_bound(
-    form: type[Form], points: np.ndarray, exact: np.ndarray, errors: np.ndarray
-) -> float | None:
-    """Give a largest error that no coefficients of a form go below; None if none is known.
-
-    `errors` (n,) are those of the coefficients that were found.
-    For a quotient of linear functions with a positive denominator, |n − f·d| ≤ t·d is linear in the
-    coefficients: a t that no coefficients satisfy at some of the points is a bound.
-    """
-    some = _worst(np.abs(errors), BOUND_ROWS)
-    some[:: max(len(points) // BOUND_ROWS, 1)] = True
-    parts = linear_parts(form, points[some])
-    if parts is None:
-        return None
-    a0, a, b0, b = parts
-    attained = float(np.max(np.abs(errors)))
-    for level in BOUND_LEVELS:
-        t = level * attained
-        rows, limits = [-b], [b0 - 1e-9]
-        for sign in (1, -1):
-            target = exact[some] + sign * t
-            rows.append(sign * (a - target[:, None] * b))
-            limits.append(sign * (target * b0 - a0))
-        solved = linprog(
-            np.zeros(a.shape[1]),
-            np.concatenate(rows),
-            np.concatenate(limits),
-            bounds=[(None, None)] * a.shape[1],
-        )
-        if solved.status == INFEASIBLE:
-            return t
-    return None
-
-
-def linear_parts(form: type[Form], points: np.ndarray) -> tuple[np.ndarray, ...] | None:
-    """Give a₀ (n,), a (n, m), b₀ (n,), b (n, m) of a quotient of linear functions, if it is one."""
-    if form.linear_parts(*points[0]) is None:
-        return None
-    parts = jax.jit(jax.vmap(lambda p: form.linear_parts(*p)))(points)
-    return tuple(np.asarray(each) for each in parts)

@@ -1,8 +1,8 @@
-"""The form of r(k), fitted from below: less than the exact factor everywhere, and proven to be.
+"""The form of r(k), fitted from below: nowhere above the exact factor, and proven not to be.
 
-r = s/B(x) with x = −k, s = √(1 − x²) and B smooth, B(0) = 1, so that the form is s over a bound of
-B from above. Both r's loss and the bound are linear in the coefficients: the fit is a linear
-program.
+r = s/B(x) with x = −k, s = √(1 − x²) and B smooth, B(0) = 1. The form is s/B̃ with an upper bound
+B̃ = 1 + x (c₀ + c₁x + c₂(1 − s)) of B. Both the loss of r and the bound are linear in the
+coefficients: the fit is a linear program.
 """
 
 from dataclasses import replace
@@ -13,11 +13,13 @@ import numpy as np
 from jax import Array
 from scipy.optimize import linprog
 
-from fitting.form import Form
-from fitting.points.grids import Grid
-from fitting.proofs.pole_proof import Certificate, bound_below
+from fitting.points.grids import Grid, trapezoid_grid
+from fitting.solvers.on_grid import OnGrid
+from fitting.form import FittedForm, Form, Proofs, Stage
+from fitting.goal import Goal
 from integrals import VELVET
 from integrals.fuzz.velvet import normalisation, series_coefficients
+from programs.bounding.denominators import DenominatorBound, bound_below
 from programs.function import Function, Parameter
 from programs.tracing.tracer import trace
 from shading.types import Scalar
@@ -30,28 +32,16 @@ _LIFT_NODES = 4097
 _SERIES_LIMIT = float(np.arcsin(0.25))
 _SERIES_TERMS = 24
 
+AXES = (replace(VELVET.axes[0], lower=-0.95, open_below=False),)
+
 _norms = jax.jit(jax.vmap(normalisation))
 
 
-class ConservativeNorm(Form):
-    """r̃ = s / (1 + x (c₀ + c₁x + c₂(1 − s))), x = −k, s = √(1 − k²); `coefficients` (3,)."""
-
-    name = "conservative-norm"
-    equation = "r = s / (1 + x (c0 + c1 x + c2 (1 - s))), x = -k, s = sqrt(1 - k²)"
-    integral = VELVET
-    axes = (replace(VELVET.axes[0], lower=-0.95, open_below=False),)
-
-    def __call__(self, asymmetry: Scalar) -> Array:
-        """Evaluate r̃ at one asymmetry."""
-        # notation: x, s, c₀ … c₂ as above
-        c, x = self.coefficients, -jnp.asarray(asymmetry)
-        s = jnp.sqrt((1 - x) * (1 + x))
-        return s / (1 + x * (c[0] + c[1] * x + c[2] * (1 - s)))
-
-    @classmethod
-    def coefficient_names(cls) -> list:
-        """Name the coefficients by the term that each multiplies."""
-        return ["c0: x", "c1: x²", "c2: x(1 − s)"]
+def _value(c, asymmetry: Scalar) -> Array:
+    # notation: x, s, c₀ … c₂ as above
+    x = -jnp.asarray(asymmetry)
+    s = jnp.sqrt((1 - x) * (1 + x))
+    return s / (1 + x * (c[0] + c[1] * x + c[2] * (1 - s)))
 
 
 def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
@@ -75,30 +65,30 @@ def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
     if not solved.success:
         raise ValueError(f"r(k) on {len(k)} nodes: the linear program says {solved.message!r}")
     coefficients = solved.x[:3]
-    dense = -ConservativeNorm.axes[0].lower * np.linspace(1, _LIFT_NODES, _LIFT_NODES) / _LIFT_NODES
+    dense = -AXES[0].lower * np.linspace(1, _LIFT_NODES, _LIFT_NODES) / _LIFT_NODES
     exact_b = np.sqrt((1 - dense) * (1 + dense)) / np.asarray(_norms(-dense))
     room = np.min(_terms(dense) @ coefficients - (exact_b - 1) / dense)
     return jnp.asarray(coefficients + np.array([MARGIN - room, 0, 0]))
 
 
-def certify_conservative(form: ConservativeNorm) -> Certificate:
+def certify_conservative(fitted: FittedForm) -> DenominatorBound:
     """Bound (B̃ − B)/x from below for all k of the form's domain: positive means r̃ ≤ r.
 
     r̃ = s/B̃ and r = s/B; at k = 0 both are one. In φ = arcsin x, s = cos φ, so that B is made of
     sines, cosines and a division; towards φ = 0, of its power series with all that is left out.
     """
-    end = float(np.arcsin(-form.axes[0].lower))
+    end = float(np.arcsin(-fitted.axes[0].lower))
     pieces = [(_near_zero, 0.0, min(_SERIES_LIMIT, end)), (_beyond, min(_SERIES_LIMIT, end), end)]
     certificates = []
     for rest, low, high in pieces:
 
         def room(phi, rest=rest):
-            return _room(form, rest, phi)
+            return _room(fitted, rest, phi)
 
         parameters = (Parameter("phi", (low, high), "rad"),)
         program = trace(Function("room", "B̃ − B over x.", parameters, None, "value", room))
         certificates.append(bound_below(program, np.array([[low, high]])))
-    return Certificate(
+    return DenominatorBound(
         min(each.bound for each in certificates), sum(each.boxes for each in certificates)
     )
 
@@ -107,9 +97,9 @@ def _terms(x: np.ndarray) -> np.ndarray:
     return np.stack([np.ones_like(x), x, 1 - np.sqrt((1 - x) * (1 + x))], axis=1)
 
 
-def _room(form: ConservativeNorm, rest, phi):
+def _room(fitted: FittedForm, rest, phi):
     """Give (B̃ − B)/x at x = sin φ, `rest` giving (B − 1)/x."""
-    c, x, s = np.asarray(form.coefficients), jnp.sin(phi), jnp.cos(phi)
+    c, x, s = fitted.constants, jnp.sin(phi), jnp.cos(phi)
     return c[0] + c[1] * x + c[2] * (1 - s) - rest(phi, x, s)
 
 
@@ -131,3 +121,20 @@ def _beyond(phi, x, s):
     a = np.pi + 2 * phi
     b = (2 / np.pi) * (a * (2 * x * x - 1) + 2 * x * s + np.pi * s * s * s) / (x * x)
     return (b - 1) / x
+
+
+CONSERVATIVE_NORM = Form(
+    name="conservative-norm",
+    equation="r = s / (1 + x (c0 + c1 x + c2 (1 - s))), x = -k, s = sqrt(1 - k²)",
+    reference=VELVET,
+    axes=AXES,
+    coefficient_names=["c0: x", "c1: x²", "c2: x(1 − s)"],
+    stages=(Stage(_value),),
+    proofs=Proofs(below=lambda fitted: certify_conservative(fitted).bound),
+    solver=OnGrid(
+        trapezoid_grid,
+        fit_conservative_norm,
+        "linear program (HiGHS)",
+        Goal(norm="linf", relative=True, side="below"),
+    ),
+)

@@ -2,37 +2,36 @@
 
 import math
 
-from coefficients.catalogue import form_of, is_known, load
+from coefficients.catalogue import Entry
 from coefficients.table import Certificates
-from fitting import Form
-from fitting.improve import ENOUGH
+from fitting import FittedForm
+from fitting.fit import ENOUGH
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
-from fitting.velvet import ConservativeNorm, certify_conservative
 
 _DIGITS = 1e4
 
 
-def proofs(name: str) -> list[str]:
-    """Say what is proven of a table by name; of a file, which may state what it likes, anew."""
-    table = load(name)
-    if is_known(name):
-        return proven(table.certificates)
-    found = certified(form_of(table), table.certificates)
-    return proven(found) if found else ["nothing: a denominator may vanish"]
+def proofs(entry: Entry) -> list[str]:
+    """Say what is proven of a table; of a file, which may state what it likes, it is proven anew."""
+    table = entry.require_table()
+    if entry.kind != "file":
+        return proof_text(table.certificates)
+    found = certified(entry.require_fitted(), table.certificates)
+    return proof_text(found) if found else ["nothing: a denominator may vanish"]
 
 
-def certified(form: Form, stated: Certificates | None) -> Certificates | None:
+def certified(fitted: FittedForm, stated: Certificates | None) -> Certificates | None:
     """Certify a form anew, as far as `stated`: what a file says of its table is no proof.
 
     None where denominators are not shown to be positive.
     """
     enough = stated.denominator_bound if stated is not None else None
-    found = certify_denominators(form, enough or ENOUGH)
+    found = certify_denominators(fitted, enough or ENOUGH)
     if not found.holds:
         return None
-    values = certify_range(form)
-    room = certify_conservative(form).bound if isinstance(form, ConservativeNorm) else -math.inf
+    values, below = certify_range(fitted), fitted.form.proofs.below
+    room = -math.inf if below is None else below(fitted)
     return Certificates(
         denominator_bound=found.bound if math.isfinite(found.bound) else None,
         boxes=found.boxes,
@@ -41,7 +40,7 @@ def certified(form: Form, stated: Certificates | None) -> Certificates | None:
     )
 
 
-def proven(certificates: Certificates | None) -> list[str]:
+def proof_text(certificates: Certificates | None) -> list[str]:
     """Say what certificates prove, a phrase each, numbers rounded to the safe side."""
     if certificates is None:
         return []
@@ -49,7 +48,7 @@ def proven(certificates: Certificates | None) -> list[str]:
     found = ["no denominator" if bound is None else f"denominators ≥ {_below(bound, 3)}"]
     if values is not None:
         low = max(math.floor(values[0] * _DIGITS) / _DIGITS, 0.0)
-        # What is above one is so by the proof's own rounding.
+        # A bound above one is so by the proof's own rounding.
         high = min(math.ceil(values[1] * _DIGITS) / _DIGITS, 1.0)
         found.append(f"values in [{low:g}, {high:g}]")
     if (certificates.conservative_bound or 0) > 0:

@@ -1,0 +1,57 @@
+"""The form that a table holds the coefficients of, if what the table says of it is true."""
+
+import reprlib
+from typing import Any
+
+import numpy as np
+
+from coefficients.table import Table
+from fitting import FittedForm, Form
+from quantities import Problem
+
+# A domain that has been through float32, or was written with seven digits, is the same.
+ROUNDING = 1e-6
+
+
+def fitted_form(table: Table, owner: Problem) -> FittedForm:
+    """Return the form of a table with its coefficients.
+
+    Raises ValueError for a form that the quantity does not have, coefficients that are not in its
+    shape, and arguments and names of coefficients that are not the form's.
+    """
+    form = owner.form(table.form, table.shape)
+    coefficients = np.array(table.coefficients)
+    if coefficients.shape != form.coefficient_shape:
+        raise ValueError(
+            f"{table.name} has coefficients of shape {coefficients.shape}, "
+            f"form {table.form!r} takes {form.coefficient_shape}"
+        )
+    _require_agreement(table, form)
+    return form.fitted(coefficients)
+
+
+def _require_agreement(table: Table, form: Form) -> None:
+    """Raise ValueError where a table says of its form what the form does not."""
+    given = {each.name: (each.unit, each.domain) for each in table.arguments}
+    wanted = {axis.name: (axis.unit, [axis.lower, axis.upper]) for axis in form.axes}
+    if [each.name for each in table.arguments] != list(wanted):
+        raise _contradiction(table, "arguments", list(given), list(wanted))
+    for name, (unit, domain) in wanted.items():
+        its_unit, its_domain = given[name]
+        if its_unit != unit:
+            raise _contradiction(table, f"the unit of {name}", its_unit, unit)
+        if not np.allclose(its_domain, domain, ROUNDING, ROUNDING):
+            raise _contradiction(table, f"the domain of {name}", its_domain, domain)
+    names = np.ravel(np.array(table.coefficient_names, dtype=object))
+    expected = np.ravel(np.array(form.coefficient_names, dtype=object))
+    for index, (its_name, name) in enumerate(zip(names, expected, strict=True)):
+        if its_name != name:
+            raise _contradiction(table, f"the name of coefficient {index}", its_name, name)
+
+
+def _contradiction(table: Table, what: str, given: Any, wanted: Any) -> ValueError:
+    # What a file holds may be long: it is shown in part.
+    return ValueError(
+        f"{table.name} gives {what} as {reprlib.repr(given)}, "
+        f"form {table.form!r} has {reprlib.repr(wanted)}"
+    )

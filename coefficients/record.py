@@ -1,0 +1,94 @@
+"""A fit, written down as a table."""
+
+import json
+import platform
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from coefficients.table import SCHEMA, Table, parse
+from fitting import Errors, Fit, Form
+from fitting.goal import LEAST_SQUARES
+from fitting.points.sample import Sample
+from integrals.reference import Axis
+
+_LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
+
+
+def table_of(fit: Fit, command: str, name: str | None = None) -> Table:
+    """Write down a fit as a table, by the quantity's name or another.
+
+    `command` is what made it.
+    """
+    form = fit.fitted.form
+    record = {
+        **_form_record(form, name or form.reference.name),
+        "coefficients": fit.fitted.constants.tolist(),
+        "coefficient_names": form.coefficient_names,
+        "grid": _grid(fit),
+        "weight": fit.measure,
+        **({"goal": asdict(fit.goal)} if fit.goal != LEAST_SQUARES else {}),
+        "reference": {"leg": form.reference.best_leg, "error": fit.reference_error},
+        "errors": {"on_grid": _errors(fit.on_grid), "off_grid": _errors(fit.off_grid)},
+        "certificates": {
+            "denominator_bound": _finite(fit.certificate.bound),
+            "boxes": fit.certificate.boxes,
+            **_known("range", fit.range and [fit.range.lower, fit.range.upper]),
+            **_known("least_error", fit.least_error),
+            **_known("conservative_bound", fit.below),
+        },
+        "provenance": {
+            "command": command,
+            "versions": {
+                "python": platform.python_version(),
+                **{library: version(library) for library in _LIBRARIES},
+            },
+            "solver": fit.solver,
+        },
+    }
+    return parse(json.dumps(record), f"the fit of {form.reference.name}")
+
+
+def _form_record(form: Form, name: str) -> dict[str, Any]:
+    return {
+        "schema": SCHEMA,
+        "name": name,
+        "quantity": form.reference.name,
+        "form": form.name,
+        **({"shape": form.shape} if form.shape is not None else {}),
+        "equation": form.equation,
+        "arguments": [_argument(axis) for axis in form.axes],
+    }
+
+
+def _grid(fit: Fit) -> dict:
+    if isinstance(fit.grid, Sample):
+        return {"nodes": [], "directions": 0, "points": len(fit.grid.points)}
+    nodes = [
+        {"argument": axis.name, "count": len(nodes), "spacing": fit.grid.spacing}
+        for axis, nodes in zip(fit.grid.axes, fit.grid.nodes, strict=True)
+    ]
+    return {"nodes": nodes, "directions": fit.inner}
+
+
+def _argument(axis: Axis) -> dict:
+    return {"name": axis.name, "unit": axis.unit, "domain": [float(axis.lower), float(axis.upper)]}
+
+
+def _errors(errors: Errors) -> dict:
+    return {
+        "rms": errors.rms,
+        "max": errors.largest,
+        "where": errors.where,
+        "points": errors.points,
+    }
+
+
+def _known(name: str, value: Any) -> dict:
+    return {} if value is None else {name: value}
+
+
+def _finite(bound: float) -> float | None:
+    return bound if np.isfinite(bound) else None

@@ -1,0 +1,250 @@
+"""What a form's traced program tells of it: what is linear in the coefficients, what must be positive.
+
+A form that is a quotient (a₀ + a·c)/(b₀ + b·c) of functions that are linear in its coefficients c is
+found by evaluating its program over such quotients instead of numbers.
+"""
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.form import Form
+from programs.bounding.denominators import ALLOWED, operands
+from programs.function import Function, Parameter
+from programs.operations import OPERATIONS
+from programs.program import Program, interpret, part
+from programs.tracing.tracer import trace
+
+# Coefficients are traced as inputs; their range says nothing.
+_ANY = (-1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class LinearParts:
+    """The parts of (a₀ + a·c)/(b₀ + b·c) at n points: a₀, b₀ (n,) and a, b (n, coefficients)."""
+
+    a0: np.ndarray
+    a: np.ndarray
+    b0: np.ndarray
+    b: np.ndarray
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the denominator holds no coefficient."""
+        return not np.any(self.b)
+
+
+@functools.lru_cache(maxsize=64)
+def program_of(form: Form) -> Program:
+    """Trace a form as a program of its coefficients, flat, followed by its axes."""
+    coefficients = Parameter("c", _ANY, size=form.size) if form.size else None
+    points = tuple(Parameter(axis.name, _ANY) for axis in form.axes)
+
+    def call(*arguments):
+        if coefficients is None:
+            return form(jnp.zeros(0), *arguments)
+        c, *point = arguments
+        return form(jnp.stack(c).reshape(form.coefficient_shape), *point)
+
+    parameters = points if coefficients is None else (coefficients, *points)
+    return trace(Function(form.name.replace("-", "_"), form.equation, parameters, None, "v", call))
+
+
+def linear_parts(form: Form, points: np.ndarray) -> LinearParts | None:
+    """Split a form into its linear parts at points (n, axes); None if it is no such quotient."""
+    size = form.size
+    inputs = [*(_Quotient.coefficient(k) for k in range(size)), *points.T]
+    try:
+        with np.errstate(all="ignore"):
+            (found,) = interpret(program_of(form), inputs, _RULES, float)
+    except _NotLinear:
+        return None
+    quotient = _Quotient.of(found)
+    a0, a = quotient.above.columns(len(points), size)
+    b0, b = quotient.below.columns(len(points), size)
+    return LinearParts(a0, a, b0, b)
+
+
+class _NotLinear(Exception):  # noqa: N818  no error: it only ends the evaluation
+    """The program does something with a coefficient that no quotient of linear functions does."""
+
+
+@dataclass(frozen=True)
+class _Affine:
+    """constant + Σ slopes[k]·cₖ, where numbers are arrays (n,) or scalars."""
+
+    constant: Any
+    slopes: dict[int, Any]
+
+    def columns(self, count: int, size: int) -> tuple[np.ndarray, np.ndarray]:
+        matrix = np.zeros((count, size))
+        for k, slope in self.slopes.items():
+            matrix[:, k] = slope
+        return np.broadcast_to(np.asarray(self.constant, float), (count,)).copy(), matrix
+
+    def scaled(self, factor: Any) -> "_Affine":
+        slopes = {k: slope * factor for k, slope in self.slopes.items()}
+        return _Affine(self.constant * factor, slopes)
+
+    def plus(self, other: "_Affine", sign: float) -> "_Affine":
+        slopes = dict(self.slopes)
+        for k, slope in other.slopes.items():
+            slopes[k] = slopes[k] + sign * slope if k in slopes else sign * slope
+        return _Affine(self.constant + sign * other.constant, slopes)
+
+
+@dataclass(frozen=True)
+class _Quotient:
+    above: _Affine
+    below: _Affine
+
+    @staticmethod
+    def coefficient(index: int) -> "_Quotient":
+        return _Quotient(_Affine(0.0, {index: 1.0}), _ONE)
+
+    @staticmethod
+    def of(value: Any) -> "_Quotient":
+        return value if isinstance(value, _Quotient) else _Quotient(_Affine(value, {}), _ONE)
+
+
+_ONE = _Affine(1.0, {})
+
+
+def _sum(sign: float):
+    def combine(one: Any, other: Any) -> _Quotient:
+        left, right = _Quotient.of(one), _Quotient.of(other)
+        if left.below is right.below:
+            return _Quotient(left.above.plus(right.above, sign), left.below)
+        # Over one denominator, where the other has none.
+        if right.below is _ONE and not right.above.slopes:
+            lifted = left.below.scaled(right.above.constant)
+            return _Quotient(left.above.plus(lifted, sign), left.below)
+        if left.below is _ONE and not left.above.slopes:
+            lifted = right.below.scaled(left.above.constant)
+            return _Quotient(lifted.plus(right.above, sign), right.below)
+        raise _NotLinear
+
+    return combine
+
+
+def _product(one: Any, other: Any) -> _Quotient:
+    left, right = _Quotient.of(one), _Quotient.of(other)
+    for factor, rest in ((left, right), (right, left)):
+        if factor.below is _ONE and not factor.above.slopes:
+            return _Quotient(rest.above.scaled(factor.above.constant), rest.below)
+    raise _NotLinear
+
+
+def _division(one: Any, other: Any) -> _Quotient:
+    left, right = _Quotient.of(one), _Quotient.of(other)
+    if right.below is not _ONE:
+        raise _NotLinear
+    if not right.above.slopes:
+        return _Quotient(left.above.scaled(1 / right.above.constant), left.below)
+    if left.below is _ONE:
+        return _Quotient(left.above, right.above)
+    raise _NotLinear
+
+
+def _lifted(name: str) -> Callable[..., Any]:
+    """Apply an operation to plain numbers as NumPy does, to quotients by the rule, if there is one."""
+    rules = {
+        "add": _sum(1.0),
+        "sub": _sum(-1.0),
+        "mul": _product,
+        "div": _division,
+        "neg": lambda x: _product(-1.0, x),
+    }
+
+    def apply(*values: Any) -> Any:
+        if not any(isinstance(value, _Quotient) for value in values):
+            return OPERATIONS[name].numpy(*map(np.asarray, values))
+        if name not in rules:
+            raise _NotLinear
+        return rules[name](*values)
+
+    return apply
+
+
+_RULES = {name: _lifted(name) for name in OPERATIONS}
+
+
+@functools.lru_cache(maxsize=64)
+def derived_positive(form: Form) -> Callable[..., Array]:
+    """Give a function of coefficients and a point: the least of what must stay positive there.
+
+    These are the divisors, radicands and arguments of logarithms in the form's program that hold
+    a coefficient. A divisor that is itself a root is left out: its radicand stands for it.
+    """
+    program = program_of(form)
+    found = {
+        operand
+        for operation, place in (("div", 1), *((name, 0) for name in ALLOWED))
+        for operand in operands(program, operation, place)
+    }
+    first, size = len(program.inputs), form.size
+    held = _holding(program, size)
+    chosen = [
+        value
+        for value in sorted(found)
+        if value in held
+        and not (value >= first and program.steps[value - first].operation == "sqrt")
+    ]
+    wanted = part(program, chosen)
+
+    def positive(coefficients, *point) -> Array:
+        if not chosen:
+            return jnp.ones(())
+        inputs = [*(jnp.ravel(coefficients)[k] for k in range(size)), *map(jnp.asarray, point)]
+        return functools.reduce(jnp.minimum, interpret(wanted, inputs, _JAX, jnp.asarray))
+
+    return positive
+
+
+def positive_of(form: Form) -> Callable[..., Array]:
+    """Give what a fit of the form keeps positive: the form's own function, or the derived one."""
+    return form.proofs.positive or derived_positive(form)
+
+
+def _holding(program: Program, size: int) -> set[int]:
+    """Give the values of a program that depend on one of its first `size` inputs."""
+    held = set(range(size))
+    for number, step in enumerate(program.steps, start=len(program.inputs)):
+        if any(type(operand) is int and operand in held for operand in step.operands):
+            held.add(number)
+    return held
+
+
+_JAX_NAMES = {
+    "add": jnp.add,
+    "sub": jnp.subtract,
+    "mul": jnp.multiply,
+    "div": jnp.divide,
+    "neg": jnp.negative,
+    "abs": jnp.abs,
+    "sqrt": jnp.sqrt,
+    "rsqrt": lambda x: 1 / jnp.sqrt(x),
+    "min": jnp.minimum,
+    "max": jnp.maximum,
+    "lt": jnp.less,
+    "le": jnp.less_equal,
+    "gt": jnp.greater,
+    "ge": jnp.greater_equal,
+    "eq": jnp.equal,
+    "ne": jnp.not_equal,
+    "and": jnp.logical_and,
+    "or": jnp.logical_or,
+    "not": jnp.logical_not,
+    "select": jnp.where,
+    "pow": jnp.power,
+    "asin": jnp.arcsin,
+    "acos": jnp.arccos,
+    "atan": jnp.arctan,
+    "atan2": jnp.arctan2,
+}
+_JAX = {name: _JAX_NAMES.get(name) or getattr(jnp, name) for name in OPERATIONS}

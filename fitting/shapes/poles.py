@@ -1,0 +1,48 @@
+"""A polynomial and simple poles in one variable."""
+
+import functools
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+
+def poles_value(coefficients, terms: int, poles: int, x: Array) -> Array:
+    """Return Σ cₖxᵏ + Σ aₖ/(bₖ + x).
+
+    `coefficients` holds those of the polynomial, `terms` of them, then aₖ, bₖ of each pole.
+    """
+    c = coefficients
+    parts = [c[terms + 2 * k] / (c[terms + 2 * k + 1] + x) for k in range(poles)]
+    if terms:
+        total = c[terms - 1]
+        for k in range(terms - 2, -1, -1):
+            total = c[k] + x * total
+        parts.insert(0, total)
+    return functools.reduce(jnp.add, map(jnp.asarray, parts))
+
+
+def least_offset(coefficients, terms: int, poles: int) -> Array:
+    """Return the least of the poles' offsets bₖ and 1: how far poles are from x ≥ 0."""
+    offsets = [coefficients[terms + 2 * k + 1] for k in range(poles)]
+    return functools.reduce(jnp.minimum, offsets, jnp.ones(()))
+
+
+def pole_names(terms: int, poles: int) -> list[str]:
+    """Name the coefficients by what they multiply, or by the pole that they belong to."""
+    inner = ["1", *(f"x{_superscript(k)}" for k in range(1, terms))][:terms]
+    numbered = [f"c{k}: {name}" for k, name in enumerate(inner)]
+    return numbered + [f"{letter}{k + 1}" for k in range(poles) for letter in "ab"]
+
+
+def pole_starts(terms: int, poles: int) -> tuple[np.ndarray, ...]:
+    """Return starts: no polynomial, and poles at several distances from x = 0."""
+    distances = ([0.9, 0.1, 0.01, 0.001], [0.5, 0.2, 0.05, 0.02], [3.0, 0.8, 0.2, 0.05])
+    starts = [
+        np.concatenate([np.zeros(terms), *([0.0, b] for b in each[:poles])]) for each in distances
+    ]
+    return tuple(starts if poles else starts[:1])
+
+
+def _superscript(k: int) -> str:
+    return "" if k == 1 else "⁰¹²³⁴⁵⁶⁷⁸⁹"[k]

@@ -1,0 +1,45 @@
+"""Rows of offset + factor · (t + pᵀx)/(1 + qᵀy), where x and y are features of the point."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Quotients:
+    """One quotient (coefficients (k,)), or several rows of one shape (coefficients (rows, k)).
+
+    `features` maps a point to x (m,), `factor` to the number before the quotient. The denominator
+    takes the first `below` features. A row holds t, p₁ … pₘ, q₁ … q_below. `offset` is a number,
+    or one for each row.
+    """
+
+    features: Callable[..., Array]
+    factor: Callable[..., Array]
+    offset: float | tuple[float, ...]
+    above: int
+    below: int
+
+    def __call__(self, coefficients: Array | np.ndarray, *point) -> Array:
+        """Evaluate the quotient, or all rows (rows,), at one point."""
+        x, factor = self.features(*point), self.factor(*point)
+        split = self.above + 1
+        numerator = coefficients[..., 0] + coefficients[..., 1:split] @ x
+        denominator = 1 + coefficients[..., split:] @ x[: self.below]
+        offset = self.offset if isinstance(self.offset, float) else jnp.array(self.offset)
+        return offset + factor * numerator / denominator
+
+    def positive(self, coefficients: Array | np.ndarray, *point) -> Array:
+        """Return the denominator, or the least of the rows' denominators, at one point."""
+        y = self.features(*point)[: self.below]
+        return jnp.min(1 + jnp.asarray(coefficients)[..., self.above + 1 :] @ y)
+
+    def columns(self, points: Array) -> tuple[Array, Array, Array]:
+        """Return (1, x), y and the factor at points (n, axes)."""
+        x = jax.vmap(lambda point: self.features(*point))(points)
+        factor = jax.vmap(lambda point: self.factor(*point))(points)
+        return jnp.concatenate([jnp.ones((len(x), 1)), x], axis=1), x[:, : self.below], factor

@@ -1,0 +1,73 @@
+"""Least squares fits of quotients whose features are known (fitting/shapes/quotients.py).
+
+A fit starts from the best polynomial, its denominator one; no fit starts from published constants.
+A penalty on small denominators keeps Levenberg–Marquardt from stepping across a pole. Every start
+without a pole in the domain that was tried ends in the same minimum (tests/fitting/test_quotients.py);
+starts with one do not.
+"""
+
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.points.grids import Grid, trapezoid_grid
+from fitting.shapes.quotients import Quotients
+from fitting.solvers.least_squares import solve_linear, solve_nonlinear
+
+# Denominators are pushed up to this at the nodes of a grid of its own, PENALTY_NODES an axis.
+DENOMINATOR_FLOOR = 0.02
+PENALTY_NODES = 17
+
+# Maps the values (n,) or (n, rows) of the quotients to weighted errors, an array of any shape.
+Errors = Callable[[Array], Array]
+
+
+def fit_quotients(
+    shape: Quotients,
+    grid: Grid,
+    root: Array,
+    targets: Array,
+    errors: Errors,
+    steps: int = 300,
+) -> Array:
+    """Return the coefficients (k,) or (rows, k) that minimise the sum of squared `errors`.
+
+    `root` (n,) holds the roots of the nodes' weights. The polynomial start fits `targets`, (n,) or
+    (n, rows), which are the values that the quotients should have. To be called within `jax.jit`.
+    """
+    split, offset = shape.above + 1, jnp.asarray(shape.offset)
+    numerator, features, factor = shape.columns(jnp.asarray(grid.points))
+    penalty_points = jnp.asarray(trapezoid_grid(grid.axes, PENALTY_NODES).points)
+    penalty_features = shape.columns(penalty_points)[1]
+    rows = targets.shape[1:]
+    weights = root.reshape(-1, *(1 for _ in rows))
+    column = factor.reshape(-1, *(1 for _ in rows))
+
+    def residual(flat: Array) -> Array:
+        z = flat.reshape(*rows, -1)
+        p, q = z[..., :split].T, z[..., split:].T
+        values = offset + column * (numerator @ p) / (1 + features @ q)
+        return jnp.concatenate([errors(values).ravel(), _penalty(1 + penalty_features @ q)])
+
+    matrix = (root * factor)[:, None] * numerator
+    start = solve_linear(matrix, weights * (targets - offset))
+    polynomials = jnp.concatenate([start, jnp.zeros((shape.below, *rows))]).T
+    return solve_nonlinear(residual, polynomials.ravel(), steps).reshape(*rows, -1)
+
+
+def fit_quotient_on_grid(shape: Quotients, grid: Grid, exact: Array) -> Array:
+    """Fit one quotient to exact values (points,) on a grid; returns coefficients (k,)."""
+
+    @jax.jit
+    def fit(root: Array, exact: Array) -> Array:
+        return fit_quotients(shape, grid, root, exact, lambda values: root * (values - exact))
+
+    return fit(np.sqrt(grid.weights), exact)
+
+
+def _penalty(denominators: Array) -> Array:
+    short = jnp.maximum(DENOMINATOR_FLOOR - denominators, 0).ravel()
+    return short / np.sqrt(len(short))

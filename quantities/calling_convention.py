@@ -1,0 +1,170 @@
+"""How a quantity is called in a shader: names, order of arguments, clamps, and remarks.
+
+The expressions are those of the forms that were fitted: here they only get the names, domains and
+clamps of their arguments. Coefficients become constants, which the printer writes into the code.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.ad_checkpoint import checkpoint_name
+
+from fitting.form import FittedForm
+from integrals.reference import Axis
+from programs.function import Function, Parameter, function
+
+# Nodes an axis at which a first stage is sampled for the range of its results.
+_SAMPLED = 33
+
+Points = np.ndarray
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One argument of an exported function.
+
+    `axis` names the axis of the form that it is, `name` is the argument's name in the shader.
+    `clamp` says at which ends of the form's domain the value is clamped; `local` is what the
+    clamped value is called in the code.
+    """
+
+    axis: str
+    name: str
+    clamp: Literal["both", "above", "none"] = "none"
+    local: str | None = None
+
+
+@dataclass(frozen=True)
+class CallingConvention:
+    """The exported functions of a quantity.
+
+    `name` is that of the function that gives the value; `arguments` are its arguments or, of a form
+    with two stages, those of the first function, which is called Calc…Coeffs. `second` names the
+    further arguments of the second function, with their domains. `summary` and `remark` are written
+    into comments; '{equation}' in the summary stands for the form.
+
+    `columns` maps points (n, axes) of the form to the second function's arguments (n, …), in NumPy.
+    """
+
+    name: str
+    summary: str
+    arguments: tuple[Argument, ...]
+    remark: str | None = None
+    second: tuple[tuple[str, tuple[float, float]], ...] = ()
+    columns: Callable[[Points], Points] | None = None
+
+    def functions(self, fitted: FittedForm) -> tuple[Function, ...]:
+        """Return the functions that a fitted form is exported as, in the order of their calls."""
+        if fitted.form.inputs is None:
+            return (self._only(fitted),)
+        return self._first(fitted), self._second(fitted)
+
+    def arguments_at(self, fitted: FittedForm, points: Points) -> tuple[Points, ...]:
+        """Return what the functions are called with at points (n, axes), an array (n, …) each.
+
+        The results of the function before, which come first in a call, are not among it.
+        """
+        order = [self._place(fitted, argument) for argument in self.arguments]
+        first = points[:, order]
+        if fitted.form.inputs is None:
+            return (first,)
+        assert self.columns is not None
+        return first, self.columns(points)
+
+    def _only(self, fitted: FittedForm) -> Function:
+        form, constants = fitted.form, fitted.constants
+        order = [self._place(fitted, argument) for argument in self.arguments]
+
+        def value(*given):
+            clamped = self._clamped(fitted, given)
+            point = [clamped[order.index(k)] for k in range(len(form.axes))]
+            return form(jnp.asarray(constants), *point)
+
+        summary = self.summary.format(equation=_equation(fitted))
+        return function(self.name, self._parameters(fitted), value, summary)
+
+    def _first(self, fitted: FittedForm) -> Function:
+        form, constants = fitted.form, fitted.constants
+        count = _result_count(fitted)
+
+        def results(*given):
+            return tuple(form.first(jnp.asarray(constants), *self._clamped(fitted, given)))
+
+        summary = form.stages[0].summary.format(name=self.name)
+        name, parameters = f"Calc{self.name}Coeffs", self._parameters(fitted)
+        return function(name, parameters, results, summary, count, "c")
+
+    def _second(self, fitted: FittedForm) -> Function:
+        call, largest = fitted.form.stages[1].call, _largest_result(fitted)
+
+        def value(c, *inputs):
+            return call(c, *inputs)
+
+        parameters = (
+            Parameter("c", (-largest, largest), size=_result_count(fitted)),
+            *(Parameter(name, domain) for name, domain in self.second),
+        )
+        return function(self.name, parameters, value, fitted.form.stages[1].summary)
+
+    def _place(self, fitted: FittedForm, argument: Argument) -> int:
+        return [axis.name for axis in fitted.axes].index(argument.axis)
+
+    def _axes(self, fitted: FittedForm) -> list[Axis]:
+        return [fitted.axes[self._place(fitted, argument)] for argument in self.arguments]
+
+    def _parameters(self, fitted: FittedForm) -> tuple[Parameter, ...]:
+        pairs = zip(self.arguments, self._axes(fitted), strict=True)
+        return tuple(
+            Parameter(argument.name, (float(axis.lower), float(axis.upper)), axis.unit)
+            for argument, axis in pairs
+        )
+
+    def _clamped(self, fitted: FittedForm, given: tuple[Any, ...]) -> list[Any]:
+        """Clamp arguments to the form's domain, the last one first."""
+        values = list(given)
+        axes = self._axes(fitted)
+        for k in reversed(range(len(values))):
+            argument, axis = self.arguments[k], axes[k]
+            if argument.clamp == "none":
+                continue
+            inside = jnp.minimum(values[k], float(axis.upper))
+            if argument.clamp == "both":
+                inside = jnp.maximum(inside, float(axis.lower))
+            values[k] = inside if argument.local is None else checkpoint_name(
+                inside, argument.local
+            )  # fmt: skip
+        return values
+
+
+def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
+    """Return the functions with the last one, which gives the value, called `name`."""
+    *before, last = functions
+    changed = [
+        replace(each, name=f"Calc{name}Coeffs", summary=each.summary.replace(last.name, name))
+        for each in before
+    ]
+    return (*changed, replace(last, name=name))
+
+
+def _equation(fitted: FittedForm) -> str:
+    """Return the equation that a form is printed as in the paper, or its family's name."""
+    form = fitted.form
+    short = form.equation.replace("Eq. (", "Eq. ").rstrip(")")
+    return short if form.shape is None else form.name
+
+
+def _result_count(fitted: FittedForm) -> int:
+    lower = [axis.lower for axis in fitted.axes[: fitted.form.shared]]
+    return len(fitted.first(*lower))
+
+
+def _largest_result(fitted: FittedForm) -> float:
+    """Return the largest size of the first stage's results, on a grid of the shared axes."""
+    lines = [np.linspace(a.lower, a.upper, _SAMPLED) for a in fitted.axes[: fitted.form.shared]]
+    nodes = [each.ravel() for each in np.meshgrid(*lines)]
+    sampled = jax.jit(jax.vmap(lambda *shared: jnp.stack(tuple(fitted.first(*shared)))))
+    return float(np.max(np.abs(sampled(*nodes))))

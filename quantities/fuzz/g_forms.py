@@ -1,0 +1,134 @@
+"""Forms of G: a part F(ν) of what an infinitely dense layer returns, which grows with density.
+
+To within a few per cent G = F(ν) (1 − e^(−d/ν …)). The exponent's rate and the factor F, of ν
+alone, are rational. The power 1/(1 + x)⁴ may stand for the exponential.
+"""
+
+import functools
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.form import Form, Proofs, Stage
+from integrals import G
+from shading.types import Scalar
+
+AXES = (replace(G.axes[0], lower=0.001, upper=0.5), replace(G.axes[1], lower=0.001))
+
+# Names of a piece's coefficients, the piece as a function of them and of d and ν, and a start.
+Piece = tuple[tuple[str, ...], Callable, tuple[float, ...]]
+
+# How fast 1 − e^(−x) grows: the exponent x. G = d/ν + … for small d.
+RATES: dict[str, Piece] = {
+    "constant": (("1",), lambda c, d, nu: d * (1 / nu + c[0]), (2.4,)),
+    "scaled": (("1", "1/ν"), lambda c, d, nu: d * (c[0] + c[1] / nu), (2.4, 1.0)),
+    "pole": (
+        ("1", "1/(b + ν + d)", "b"),
+        lambda c, d, nu: d * (c[0] + c[1] / (c[2] + nu + d) + 1 / nu),
+        (2.2, 0.1, 0.03),
+    ),
+}
+# The limit of G as d grows.
+FACTORS: dict[str, Piece] = {
+    "linear": (("ν",), lambda c, d, nu: 1 / (1 + c[0] * nu), (2.9,)),
+    "affine": (("1", "ν"), lambda c, d, nu: 1 / (c[0] + c[1] * nu), (1.0, 2.9)),
+    "pole": (("1", "1/(b + ν)", "b"), lambda c, d, nu: c[0] + c[1] / (c[2] + nu), (0.1, 0.3, 0.3)),
+    "inverse": (
+        ("ν", "ν/(b + ν)", "b"),
+        lambda c, d, nu: 1 / (1 + nu * (c[0] + c[1] / (c[2] + nu))),
+        (2.5, 0.1, 0.03),
+    ),
+}
+DECAYS = ("exponential", "power")
+
+
+def _unguarded(*_) -> Array:
+    """Let a fit step where it will: the certificate has the last word on poles."""
+    return jnp.ones(())
+
+
+@functools.cache
+def decay_g(*, decay: str, rate: str, factor: str) -> Form:
+    """Return the form F (1 − D(x)): x a rate of RATES, F of FACTORS, and D of DECAYS.
+
+    Its coefficients are those of the rate, of the factor, and of the decay.
+    """
+    rate_names, rate_of, rate_start = RATES[rate]
+    factor_names, factor_of, factor_start = FACTORS[factor]
+    split = len(rate_names)
+    power_names = ("x", "x²") if decay == "power" else ()
+    power_start = (0.25, 0.03) if decay == "power" else ()
+
+    def value(c, density: Scalar, cos_v: Scalar) -> Array:
+        d, nu = jnp.asarray(density), jnp.asarray(cos_v)
+        x = rate_of(c[:split], d, nu)
+        f = factor_of(c[split : split + len(factor_names)], d, nu)
+        if decay == "exponential":
+            return (1 - jnp.exp(-x)) * f
+        base = 1 + x * (c[-2] + c[-1] * x)
+        square = base * base
+        return (1 - 1 / (square * square)) * f
+
+    parts = {"rate": rate_names, "factor": factor_names, "decay": power_names}
+    # The leading behaviour, with corrections of several sizes.
+    start = np.array([*rate_start, *factor_start, *power_start])
+    return Form(
+        name="decay-g",
+        equation=(
+            f"G = F(ν) (1 − {'e^(−x)' if decay == 'exponential' else '1/(1 + ax + bx²)⁴'}), "
+            f"rate x {rate}, factor F {factor}"
+        ),
+        reference=G,
+        axes=AXES,
+        coefficient_names=[f"{part}: {name}" for part, names in parts.items() for name in names],
+        stages=(Stage(value),),
+        starts=(start, start * 1.3, start * 0.75),
+        shape={"decay": decay, "rate": rate, "factor": factor},
+        proofs=Proofs(positive=_unguarded),
+    )
+
+
+@functools.cache
+def tied_g(*, poles: int, root: int) -> Form:
+    """Return the form of G that is d/ν + … for small d and one at ν = 0, both exactly.
+
+    (1 − e^(−d (1/ν + w)/(1 + c√d))) / (1 + νw): the rate and the factor share w(ν), a constant and
+    `poles` (0 or 1); `root` = 1 slows the rate by 1/(1 + c√d). The coefficients are those of w, and c.
+    """
+
+    def value(c, density: Scalar, cos_v: Scalar) -> Array:
+        d, nu = jnp.asarray(density), jnp.asarray(cos_v)
+        w = c[0] + c[1] / (c[2] + nu) if poles else c[0]
+        x = d * (1 / nu + w)
+        if root:
+            x = x / (1 + c[-1] * jnp.sqrt(d))
+        return (1 - jnp.exp(-x)) / (1 + nu * w)
+
+    # An infinite layer's 1/(1 + 3ν), with corrections of two sizes.
+    first = np.array([2.5, *((0.1, 0.05) if poles else ()), *((0.1,) if root else ())])
+    return Form(
+        name="tied-g",
+        equation=(
+            f"G = (1 − e^(−d (1/ν + w){' / (1 + c √d)' if root else ''})) / (1 + ν w), "
+            f"w = {'a₀ + a₁/(b + ν)' if poles else 'a₀'}"
+        ),
+        reference=G,
+        axes=AXES,
+        coefficient_names=["a0", *(("a1", "b") if poles else ()), *(("c: √d",) if root else ())],
+        stages=(Stage(value),),
+        starts=(first, first * 1.3),
+        shape={"poles": poles, "root": root},
+        proofs=Proofs(positive=_unguarded),
+    )
+
+
+def candidates() -> Iterator[Form]:
+    """Yield the forms of G that a search tries."""
+    for decay, rate, factor in itertools.product(DECAYS, RATES, FACTORS):
+        yield decay_g(decay=decay, rate=rate, factor=factor)
+    for poles, root in itertools.product(range(2), range(2)):
+        yield tied_g(poles=poles, root=root)

@@ -1,0 +1,95 @@
+"""P_s: part of the scattered light that goes down to the base."""
+
+from dataclasses import replace
+
+import numpy as np
+
+import integrals
+from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
+from programs.function import Function, Parameter, function
+from quantities.calling_convention import Argument, CallingConvention
+from quantities.family import Family
+from quantities.fuzz.lights import cosines_at
+from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
+from quantities.fuzz.supplement import RATIONAL_PS
+from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+
+_COSINE = (0.0, 1.0)
+# The least α whose error in float32 is stated.
+LEAST_EXACT_ALPHA = 0.05
+
+
+def exact_functions(precision: str) -> tuple[Function, ...]:
+    """Return the closed form as a function of u·n, u·t, n·t and α.
+
+    The precision ("half", "float" or "double") decides how many steps the root takes.
+    """
+    steps = FLOAT64_STEPS if precision == "double" else FLOAT32_STEPS
+
+    def exact(cos_un, cos_ut, cos_nt, alpha):
+        return scattered_fraction(cos_un, cos_ut, cos_nt, alpha, steps)
+
+    parameters = (
+        Parameter("NdotU", _COSINE),
+        Parameter("TdotU", (-1.0, 1.0)),
+        Parameter("NdotT", _COSINE),
+        Parameter("alpha", (LEAST_EXACT_ALPHA, 1.0)),
+    )
+    summary = "P_s in closed form, without coefficients."
+    return (function("FuzzPsExact", parameters, exact, summary),)
+
+
+PS = Problem(
+    reference=integrals.PS,
+    default=RATIONAL_PS,
+    families={
+        "one-root-ps": Family(
+            one_root_ps,
+            {"skew": range(2), "degree": range(MAX_DEGREE + 1), "least_alpha": "fraction"},
+        ),
+        "two-root-ps": Family(
+            two_root_ps,
+            {"terms": range(3, 6), "degree": range(MAX_DEGREE + 1), "least_alpha": "fraction"},
+        ),
+        "cubic-ps": Family(
+            cubic_ps,
+            {"steps": range(5), "degree": range(-1, MAX_DEGREE + 1), "least_alpha": "fraction"},
+        ),
+    },
+    candidates=lambda lower: candidates(lower["alpha"]),
+    calling=CallingConvention(
+        name="FuzzPs",
+        summary="P_s for one direction of light.",
+        arguments=(
+            Argument("alpha", "alpha", clamp="both", local="alpha"),
+            Argument("theta_f", "thetaF", clamp="both", local="theta_f"),
+        ),
+        remark="alpha, the roughness, is the projected area along the fibre t, thetaF its polar "
+        "angle: turn t so that NdotT >= 0; NdotU = u·n and TdotU = u·t of the light's direction u. "
+        "What is proven holds for cosines of unit vectors",
+        second=(("NdotU", _COSINE), ("TdotU", (-1.0, 1.0))),
+        columns=lambda points: np.stack(cosines_at(points)[:2], axis=1),
+    ),
+    closed_form=fraction_at,
+    exact_code=ExactCode(
+        "closed form, root by Newton's steps",
+        (
+            replace(integrals.PS.axes[0], lower=LEAST_EXACT_ALPHA, open_below=False),
+            *integrals.PS.axes[1:],
+        ),
+        exact_functions,
+        lambda points: (np.stack([*cosines_at(points), points[:, 0]], axis=1),),
+        "NdotU = u·n, TdotU = u·t, NdotT = n·t, all unit vectors; t and −t are one fibre: turn t "
+        "so that NdotT >= 0",
+    ),
+    plot=PlotHints(
+        {
+            "alpha": AxisHint("α", 0.05, 1.0, 0.35),
+            "theta_f": AxisHint("$θ_f$ / °", 0.0, np.pi / 2, np.pi / 4, factor=180 / np.pi),
+            "theta_u": AxisHint("$θ_u$ / °", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi),
+            "phi": AxisHint("φ / °", -np.pi, np.pi, np.pi / 2, factor=180 / np.pi),
+        },
+        cost_label="operations a direction",
+    ),
+    topic="fuzz",
+)

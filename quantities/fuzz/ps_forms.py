@@ -1,0 +1,244 @@
+"""Forms of P_s that know the integral: its symmetries, the cubic's root, and where it is ½.
+
+P_s depends on c = u·n, a = u·t, b = n·t and α, and is the same for t and −t. With κ = 1 − α²,
+T = κab, σ² = 1 − κa², q = 1 − κb² and S = σ√q, the closed form (docs/closed-form.md) is that of a
+root λ of λ (λ − S + T)(λ + S + T) = α²c (1 − λ²). Each form has a part that is evaluated once for a
+material, and a short one for each direction of light.
+"""
+
+import functools
+import itertools
+from collections.abc import Iterator
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.form import Form
+from fitting.shapes.surfaces import flat_start, surface_names, surface_values
+from quantities.fuzz.material import DirectionProofs, material_form
+from shading.types import Scalar
+
+MAX_DEGREE = 4
+# Denominators are larger for all unit vectors u, n and t: this keeps rounding, and cosines that no
+# such vectors have, from dividing by zero.
+LEAST = 1e-6
+
+
+@functools.cache
+def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
+    """Return ½ + (m₀c + m₁a [+ m₆ca]) / √(m₂ + m₃c + m₄a² [+ m₅ca]).
+
+    `skew` = 1 adds the products ca to both. The six functions of the material are polynomials in
+    α and y = cos²θf of a total degree. The value is ½ at α = 1.
+    """
+    surfaces = ["u0", "u1", "u2", "u3", "u4", "u5"][: 6 if skew else 4]
+
+    def _above(m, c, a):
+        return m[0] * c + a * (m[1] + m[6] * c) if skew else m[0] * c + m[1] * a
+
+    def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+        """Return m₀ … m₄, and m₅, m₆ where there are products."""
+        alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
+        y, kappa = b * b, (1 - alpha) * (1 + alpha)
+        u = surface_values(coefficients, len(surfaces), degree, alpha, y)
+        m = (-(1 - alpha) * u[0], kappa * b * u[1], 1 - kappa * y, u[2], u[3])
+        return (*m, b * u[4], (1 - alpha) * b * u[5]) if skew else m
+
+    def radicand(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        c, a = cos_un, cos_ut
+        curved = a * (m[4] * a + m[5] * c) if skew else m[4] * a * a
+        return m[2] + m[3] * c + curved
+
+    def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        c, a = cos_un, cos_ut
+        return 0.5 + _above(m, c, a) / jnp.sqrt(radicand(m, c, a))
+
+    def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
+        """Return the radicand less the square of twice what is divided by its root."""
+        twice = 2 * _above(m, cos_un, cos_ut)
+        return (radicand(m, cos_un, cos_ut) - twice * twice,)
+
+    # The coplanar case c = 0, where T/2S is exact, and a light along n.
+    values = [0.2, 0.5, 0.0, -0.95, 0.0, 0.0][: len(surfaces)]
+    return material_form(
+        name="one-root-ps",
+        equation=(
+            f"P_s = 1/2 + (m0 c + m1 a{' + m6 c a' if skew else ''}) / "
+            f"√(m2 + m3 c + m4 a²{' + m5 c a' if skew else ''}), degree {degree}"
+        ),
+        least_alpha=least_alpha,
+        shape={"skew": skew, "degree": degree, "least_alpha": least_alpha},
+        coefficient_names=surface_names(surfaces, degree, "α", "y"),
+        starts=(flat_start(values, degree, {3: (1.0, 1.7)}),),
+        material=material,
+        along=along,
+        proofs=DirectionProofs(along, margins, radicand),
+    )
+
+
+@functools.cache
+def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
+    """Return 1 − t (t + m₃c) / (8 (σR + m₄c [+ m₆c²])), h = σ − m₁a [+ m₅c], R = √(h² + m₂c).
+
+    t = h + R is the root of a quadratic about S − T. `terms` (3, 4 or 5) is the number of functions
+    of the material, polynomials in α and y = cos²θf of a total degree. The form is exact at c = 0,
+    and ½ at α = 1.
+    """
+    surfaces = ["u0", "u1", "u2", "u3", "u4"][:terms]
+
+    def _parts(m, c, a):
+        sigma = jnp.sqrt(1 - m[0] * a * a)
+        h = sigma - m[1] * a + m[5] * c if terms > 3 else sigma - m[1] * a
+        return sigma, h, jnp.sqrt(h * h + m[2] * c)
+
+    def _slope(m, c):
+        return m[4] + m[6] * c if terms > 4 else m[4]
+
+    def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+        """Return m₀ … m₆, as many as the form has."""
+        alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
+        y, kappa, beta = b * b, (1 - alpha) * (1 + alpha), 1 - alpha
+        q = 1 - kappa * y
+        root = jnp.sqrt(q)
+        u = surface_values(coefficients, terms, degree, alpha, y)
+        if terms == 3:
+            return (
+                kappa,
+                kappa * b / root,
+                beta * u[0] * u[0] / q,
+                (2 * u[1] + beta * u[2]) / root,
+                u[1] / q,
+            )
+        h = beta * u[1] - u[0] * u[0] / 4
+        m = (
+            kappa,
+            kappa * b / root,
+            u[0] * u[0] / q,
+            (2 * (u[2] - h) + beta * u[3]) / root,
+            u[2] / q,
+            h / root,
+        )
+        return m if terms == 4 else (*m, beta * u[4] / q)
+
+    def along(m: tuple, cos_un: Scalar, cos_ut: Scalar, least: float = LEAST) -> Array:
+        c, a = cos_un, cos_ut
+        sigma, h, root = _parts(m, c, a)
+        t = h + root
+        below = jnp.maximum(sigma * root + _slope(m, c) * c, least)
+        return 1 - 0.125 * t * (t + m[3] * c) / below
+
+    def positive(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Return the denominator over its value at c = 0."""
+        sigma, _, root = _parts(m, cos_un, cos_ut)
+        return 1 + _slope(m, cos_un) * cos_un / (sigma * root)
+
+    def margins(m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
+        """Return m₂, t + m₃c, and a lower bound of (t/c) times the numerator of P̃_s."""
+        # notation: docs/range.md; q = 1 − κb². t ≥ 0 always holds, but an interval does not show it.
+        c, a = cos_un, cos_ut
+        sigma, h, root = _parts(m, c, a)
+        t, slope = jnp.maximum(h + root, 0), _slope(m, c)
+        rise = 2 / jnp.sqrt(1 - m[0] * cos_nt * cos_nt) - (2 * m[5] if terms > 3 else 0) - m[3]
+        return m[2], t + m[3] * c, t * (t * rise + 8 * slope - m[2]) + 4 * sigma * m[2]
+
+    # The root of λ² − 2hλ − e with e = (1.7 α)² c/q.
+    values = [0.0, 0.03, 0.0] if terms == 3 else [0.0, 0.0, 0.03, 0.0, 0.0]
+    return material_form(
+        name="two-root-ps",
+        equation=(
+            "P_s = 1 - t (t + m3 c) / (8 (σ R + m4 c"
+            f"{' + m6 c²' if terms > 4 else ''})), t = h + R, R = √(h² + m2 c), "
+            f"h = σ - m1 a{' + m5 c' if terms > 3 else ''}, σ = √(1 - m0 a²), degree {degree}"
+        ),
+        least_alpha=least_alpha,
+        shape={"terms": terms, "degree": degree, "least_alpha": least_alpha},
+        coefficient_names=surface_names(surfaces, degree, "α", "y"),
+        starts=(flat_start(values[:terms], degree, {0: (1.7, 0.0)}),),
+        material=material,
+        along=along,
+        proofs=DirectionProofs(
+            lambda m, cos_un, cos_ut: along(m, cos_un, cos_ut, -np.inf), margins, positive
+        ),
+    )
+
+
+@functools.cache
+def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
+    """Return the closed form with the cubic's root λ from a quadratic and `steps` of Newton's.
+
+    P̃_s = 1 − √((λ + c)(λ + E/σ²)) / D, E = α²c, D = ((λ + T)² − S²)/λ + 2 (λ + T + E). The quadratic
+    has one of the cubic's factors, λ + S + T, frozen as g = S + max(S, T), without coefficients; or,
+    where `degree` ≥ 0, as S + √(S² + T² + m₅c), m₅ a polynomial of that degree.
+    """
+
+    def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
+        """Return κ, α², κb, q, √q, and m₅ where there is one."""
+        alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
+        y, kappa, square = b * b, (1 - alpha) * (1 + alpha), alpha * alpha
+        q = 1 - kappa * y
+        m = (kappa, square, kappa * b, q, jnp.sqrt(q))
+        if degree < 0:
+            return m
+        (u,) = surface_values(coefficients, 1, degree, alpha, y)
+        return (*m, u * (1 - alpha) * square)
+
+    def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        # notation: c, a, S, T, E, λ as above; w = −E₁ of λ³ + (E + 2T) λ² − E₁λ − E.
+        c, a = cos_un, cos_ut
+        sigma2 = 1 - m[0] * a * a
+        s, t, e = m[4] * jnp.sqrt(sigma2), m[2] * a, m[1] * c
+        square = s * s if degree >= 0 or not steps else None
+        g = jnp.maximum(s, t) if degree < 0 else jnp.sqrt(square + t * t + m[5] * c)
+        part = e / (s + g + e)
+        h = (s - t) * (0.5 - 0.5 * part)
+        root = jnp.maximum(h + jnp.sqrt(h * h + part), LEAST)
+        ellipse = None
+        if steps:
+            b, w = e + t + t, (1 - sigma2) - m[3]
+            for _ in range(steps):
+                y = root + b
+                z = y * root + w
+                slope = jnp.maximum((y + root) * root + z, LEAST)
+                root = jnp.maximum(root - (z * root - e) / slope, LEAST)
+            ellipse = 3 * root + (b + b) + w / root
+        else:
+            top = root + t
+            both = top + e
+            ellipse = (top * top - square) / root + (both + both)
+        return 1 - jnp.sqrt((root + c) * (root + e / sigma2)) / jnp.maximum(ellipse, LEAST)
+
+    def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
+        """Return the radicand in g, if there is one: all else is proven in docs/range.md."""
+        if degree < 0:
+            return ()
+        s2, t = (1 - m[0] * cos_ut * cos_ut) * m[3], m[2] * cos_ut
+        return (s2 + t * t + m[5] * cos_un,)
+
+    return material_form(
+        name="cubic-ps",
+        equation=(
+            "P_s in closed form, λ from λ² - (S - T)(1 - e) λ = e, e = E / (g + E), "
+            f"g = S + {'max(S, T)' if degree < 0 else '√(S² + T² + m5 c)'}, E = α²c"
+            f"{f', and {steps} steps' if steps else ''}"
+        ),
+        least_alpha=least_alpha,
+        shape={"steps": steps, "degree": degree, "least_alpha": least_alpha},
+        coefficient_names=surface_names(["m5"], degree, "α", "y") if degree >= 0 else [],
+        starts=(flat_start([2.0], degree) if degree >= 0 else np.zeros(0),),
+        material=material,
+        along=along,
+        proofs=DirectionProofs(along, margins),
+    )
+
+
+def candidates(least_alpha: float) -> Iterator[Form]:
+    """Yield the forms of P_s that a search tries, for α ≥ `least_alpha`."""
+    for skew, degree in itertools.product(range(2), (1, 2, 3)):
+        yield one_root_ps(skew=skew, degree=degree, least_alpha=least_alpha)
+    for terms, degree in itertools.product((3, 4, 5), (2, 3, 4)):
+        yield two_root_ps(terms=terms, degree=degree, least_alpha=least_alpha)
+    for steps in range(4):
+        yield cubic_ps(steps=steps, degree=-1, least_alpha=least_alpha)
+    for degree in (0, 2, 4):
+        yield cubic_ps(steps=0, degree=degree, least_alpha=least_alpha)

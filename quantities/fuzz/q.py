@@ -1,0 +1,45 @@
+"""Q: average chance of light to penetrate the layer."""
+
+import integrals
+from integrals.fuzz.q import average_penetration
+from programs.function import Function, Parameter, function
+from quantities.calling_convention import Argument, CallingConvention
+from quantities.family import Family
+from quantities.fuzz.q_forms import AXES, STRUCTURES, candidates, pole_q
+from quantities.fuzz.supplement import QUADRATIC_Q
+from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+
+
+def exact_functions(_: str) -> tuple[Function, ...]:
+    """Return the closed form as a function of the density."""
+    parameters = (Parameter("density", (AXES[0].lower, AXES[0].upper)),)
+    summary = "Q in closed form, without coefficients."
+    return (function("FuzzAveragePenetrationExact", parameters, average_penetration, summary),)
+
+
+Q = Problem(
+    reference=integrals.Q,
+    default=QUADRATIC_Q,
+    families={
+        "pole-q": Family(
+            pole_q, {"structure": tuple(STRUCTURES), "terms": range(9), "poles": range(5)}
+        ),
+    },
+    candidates=lambda _: candidates(),
+    calling=CallingConvention(
+        name="FuzzAveragePenetration",
+        summary="Q ({equation}); clamps density from above.",
+        arguments=(Argument("density", "density", clamp="above", local="density"),),
+        remark="density is thickness over mean free path",
+    ),
+    closed_form=average_penetration,
+    exact_code=ExactCode(
+        "closed form, by an exponential integral",
+        AXES,
+        exact_functions,
+        lambda points: (points,),
+        "density is thickness over mean free path",
+    ),
+    plot=PlotHints({"density": AxisHint("density $d$", 0.0, 1.0, 0.2)}, largest_error=0.01),
+    topic="fuzz",
+)

@@ -1,0 +1,95 @@
+"""Forms of R: rational in one variable of α and in cos²θf, for t and −t are one fibre."""
+
+import functools
+import itertools
+from collections.abc import Iterator
+from dataclasses import replace
+
+import jax.numpy as jnp
+from jax import Array
+
+from fitting.form import Form, Proofs, Stage
+from fitting.greedy_monomials import greedy_sets
+from fitting.shapes.monomials import Exponents, horner
+from integrals import R
+from shading.types import Scalar
+
+# A variable's symbol, and the variable as a function of α.
+VARIABLES = {
+    "1-alpha": ("1 − α", lambda alpha: 1 - alpha),
+    "1-alpha^2": ("1 − α²", lambda alpha: 1 - alpha * alpha),
+    "(1-alpha)/(1+alpha)": ("(1 − α)/(1 + α)", lambda alpha: (1 - alpha) / (1 + alpha)),
+}
+# Monomials zⁱyʲ that the numerator and the denominator of a search choose from.
+NUMERATOR = tuple((i, j) for i in range(4) for j in range(4))
+DENOMINATOR = tuple((i, j) for i in range(3) for j in range(3) if i + j)
+
+
+@functools.cache
+def monomial_r(
+    *, variable: str, numerator: Exponents, denominator: Exponents, least_alpha: float
+) -> Form:
+    """Return R̃ = ½ + z N(z, y)/D(z, y), y = cos²θf, for α ≥ `least_alpha`.
+
+    `numerator` and `denominator` hold the exponents (i, j) of the monomials zⁱyʲ with a
+    coefficient; D has 1 besides. R = ½ at α = 1 is exact. The coefficients are the numerator's,
+    then the denominator's.
+    """
+    symbol, z_of = VARIABLES[variable]
+    split = len(numerator)
+
+    def positive(c, alpha: Scalar, theta_f: Scalar) -> Array:
+        z, cosine = z_of(jnp.asarray(alpha)), jnp.cos(theta_f)
+        below = zip(denominator, c[split:], strict=True)
+        return horner({(0, 0): 1.0, **dict(below)}, z, cosine * cosine)
+
+    def value(c, alpha: Scalar, theta_f: Scalar) -> Array:
+        z, cosine = z_of(jnp.asarray(alpha)), jnp.cos(theta_f)
+        above = zip(numerator, c[:split], strict=True)
+        return 0.5 + z * horner(dict(above), z, cosine * cosine) / positive(c, alpha, theta_f)
+
+    sets = {"N": numerator, "D": denominator}
+    return Form(
+        name="monomial-r",
+        equation=(
+            f"R = 1/2 + z N/D, z = {symbol}, y = cos²θf, "
+            f"{len(numerator)} and 1 + {len(denominator)} monomials z^i y^j"
+        ),
+        reference=R,
+        axes=(replace(R.axes[0], lower=least_alpha, open_below=False), R.axes[1]),
+        coefficient_names=[
+            f"{part}: z^{i} y^{j}" for part, exponents in sets.items() for i, j in exponents
+        ],
+        stages=(Stage(value),),
+        shape={
+            "variable": variable,
+            "numerator": [list(each) for each in numerator],
+            "denominator": [list(each) for each in denominator],
+            "least_alpha": least_alpha,
+        },
+        proofs=Proofs(positive=positive),
+    )
+
+
+
+
+def candidates(least_alpha: float, known: tuple[Form, ...] = ()) -> Iterator[Form]:
+    """Yield the `known` forms, then forms of few monomials to many, in each of the variables."""
+    grown = (
+        monomial_r(
+            variable=variable, numerator=above, denominator=below, least_alpha=least_alpha
+        )
+        for variable in VARIABLES
+        for above, below in greedy_sets(
+            monomial_r(
+                variable=variable,
+                numerator=NUMERATOR,
+                denominator=DENOMINATOR,
+                least_alpha=least_alpha,
+            ),
+            NUMERATOR,
+            DENOMINATOR,
+            start=(((0, 0), (0, 1)), ((1, 0),)),
+        )
+    )
+    return itertools.chain(known, grown)

@@ -1,0 +1,145 @@
+"""The forms of the supplement to "Samurai Shading in Ghost of Tsushima": Eq. (1) to (5)."""
+
+from dataclasses import replace
+
+import jax.numpy as jnp
+from jax import Array
+
+from fitting.form import Form, Proofs, Stage
+from fitting.points.grids import gauss_grid, trapezoid_grid
+from fitting.shapes.quotients import Quotients
+from fitting.solvers.on_grid import MARQUARDT, OnGrid
+from fitting.solvers.quotients import fit_quotient_on_grid
+from fitting.solvers.separable import Separable
+from integrals import PS, G, Q, R
+from integrals.fuzz.ps import scattered_fraction
+from quantities.fuzz.lights import cosines_of_light, light_directions
+from shading.types import Scalar
+
+# The terms of the vector x of Eq. (2) and (5), in the order of Listing 1.
+TERMS = ["β", "γ", "δ", "β²", "γ²", "βγ", "βδ", "β³", "γ³", "δ³", "β²γ", "β²δ", "βγ²"]
+# Eq. (5) takes the first of them in its denominator.
+_BELOW_R = 3
+# 48² = 2,304 lights a material; with 96² the limit's rms changes by less than 1e-6
+# (tests/fitting/test_separable.py).
+LIGHTS_PER_ANGLE = 48
+
+
+def terms(alpha: Scalar, theta_f: Scalar) -> Array:
+    """Return x (13,) of Eq. (2) with β = 1 − α, γ = cos θf, δ = sin θf."""
+    # notation: b, g, d are β, γ, δ of Eq. (2).
+    b = 1 - jnp.asarray(alpha)
+    g = jnp.cos(theta_f)
+    d = jnp.sin(theta_f)
+    b2, g2, d2 = b * b, g * g, d * d
+    return jnp.stack(
+        [b, g, d, b2, g2, b * g, b * d, b2 * b, g2 * g, d2 * d, b2 * g, b2 * d, b * g2]
+    )
+
+
+def beta(alpha: Scalar, _: Scalar) -> Array:
+    """Return β = 1 − α, which multiplies the quotients of Eq. (2) and (5)."""
+    return 1 - jnp.asarray(alpha)
+
+
+def direction_basis(cos_un: Scalar, cos_ut: Scalar) -> Array:
+    """Return the six functions of direction (6,) that Eq. (1) combines."""
+    n, t = jnp.asarray(cos_un), jnp.asarray(cos_ut)
+    return jnp.stack([jnp.ones_like(n * t), n, t, n * n, n * t, t * t])
+
+
+def _combined(c, cos_un: Scalar, cos_ut: Scalar) -> Array:
+    """Combine the functions of direction with a material's c₀ … c₅ (Eq. 1)."""
+    return jnp.asarray(c) @ direction_basis(cos_un, cos_ut)
+
+
+PS_ROWS = Quotients(terms, beta, (0.5, 0.0, 0.0, 0.0, 0.0, 0.0), len(TERMS), len(TERMS))
+R_QUOTIENT = Quotients(terms, beta, 0.5, len(TERMS), _BELOW_R)
+
+_ROW_NAMES = ["t", *(f"p {x}" for x in TERMS), *(f"q {x}" for x in TERMS)]
+
+RATIONAL_PS = Form(
+    name="rational-ps",
+    equation="Eq. (1) and (2)",
+    reference=PS,
+    axes=(
+        replace(PS.axes[0], lower=0.15, open_below=False),
+        replace(PS.axes[1], lower=0.1),
+        PS.axes[2],
+        PS.axes[3],
+    ),
+    coefficient_names=[[f"c{i}: {name}" for name in _ROW_NAMES] for i in range(6)],
+    stages=(
+        Stage(
+            lambda c, alpha, theta_f: PS_ROWS(c, alpha, theta_f),
+            "Coefficients c of {name} for one material (Eq. 2); clamps to the domain.",
+        ),
+        Stage(
+            _combined,
+            "P_s for one direction of light (Eq. 1): c[3] goes with (u·n)², c[4] with (u·n)(u·t).",
+        ),
+    ),
+    shared=2,
+    inputs=cosines_of_light,
+    proofs=Proofs(
+        positive=lambda c, alpha, theta_f, *_: PS_ROWS.positive(c, alpha, theta_f),
+        first_split=(64, 8),
+    ),
+    solver=Separable(
+        PS_ROWS,
+        rule=lambda measure: light_directions(PS.axes[2], LIGHTS_PER_ANGLE, measure),
+        exact=lambda alpha, theta_f, cos_un, cos_ut: scattered_fraction(
+            cos_un, cos_ut, jnp.cos(theta_f), alpha
+        ),
+    ),
+)
+
+
+def _rational_g(c, density: Scalar, cos_v: Scalar) -> Array:
+    d, nu = jnp.asarray(density), jnp.asarray(cos_v)
+    return d * (1 + nu * (c[0] + nu * c[1])) / (d + nu * (c[2] + nu * nu * c[3]))
+
+
+RATIONAL_G = Form(
+    name="rational-g",
+    equation="Eq. (3)",
+    reference=G,
+    axes=(
+        replace(G.axes[0], lower=0.001, upper=0.5),
+        replace(G.axes[1], lower=0.001),
+    ),
+    coefficient_names=["c0: dν", "c1: dν²", "c2: ν", "c3: ν³"],
+    stages=(Stage(_rational_g),),
+    solver=OnGrid(gauss_grid),
+)
+
+
+def _quadratic_q(c, density: Scalar) -> Array:
+    d = jnp.asarray(density)
+    return 1 + d * (c[0] + d * c[1])
+
+
+QUADRATIC_Q = Form(
+    name="quadratic-q",
+    equation="Eq. (4)",
+    reference=Q,
+    axes=(replace(Q.axes[0], upper=0.5),),
+    coefficient_names=["c0: d", "c1: d²"],
+    stages=(Stage(_quadratic_q),),
+    solver=OnGrid(gauss_grid),
+)
+
+RATIONAL_R = Form(
+    name="rational-r",
+    equation="Eq. (5)",
+    reference=R,
+    axes=(replace(R.axes[0], lower=0.15, open_below=False), R.axes[1]),
+    coefficient_names=["t", *(f"p {x}" for x in TERMS), *(f"q {x}" for x in TERMS[:_BELOW_R])],
+    stages=(Stage(lambda c, alpha, theta_f: R_QUOTIENT(c, alpha, theta_f)),),
+    proofs=Proofs(positive=R_QUOTIENT.positive),
+    solver=OnGrid(
+        trapezoid_grid,
+        lambda grid, exact: fit_quotient_on_grid(R_QUOTIENT, grid, exact),
+        MARQUARDT,
+    ),
+)

@@ -1,0 +1,35 @@
+"""r(k): the largest factor of the velvet phase function that creates no energy."""
+
+import integrals
+from integrals.fuzz.velvet import normalisation
+from programs.function import Function, Parameter, function
+from quantities.calling_convention import Argument, CallingConvention
+from quantities.fuzz.velvet_form import AXES, CONSERVATIVE_NORM
+from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+
+_REMARK = "asymmetry is k of Schlick's lobe p_Schlick(k, -sin(t, h)), whose factor r is"
+
+
+def exact_functions(_: str) -> tuple[Function, ...]:
+    """Return the closed form as a function of the asymmetry."""
+    parameters = (Parameter("asymmetry", (AXES[0].lower, AXES[0].upper)),)
+    summary = "r(k) in closed form, without coefficients."
+    return (function("FuzzVelvetNormExact", parameters, normalisation, summary),)
+
+
+VELVET = Problem(
+    reference=integrals.VELVET,
+    default=CONSERVATIVE_NORM,
+    calling=CallingConvention(
+        name="FuzzVelvetNorm",
+        summary="r(k), which scales the velvet phase function, from below; clamps to the domain.",
+        arguments=(Argument("asymmetry", "asymmetry", clamp="both"),),
+        remark=_REMARK,
+    ),
+    closed_form=normalisation,
+    exact_code=ExactCode(
+        "closed form", AXES, exact_functions, lambda points: (points,), _REMARK
+    ),
+    plot=PlotHints({"asymmetry": AxisHint("asymmetry $k$", -0.95, 0.0, -0.5)}, largest_error=1e-3),
+    topic="fuzz",
+)

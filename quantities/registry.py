@@ -1,0 +1,31 @@
+"""The quantities that are known, by name; a quantity comes in by `register`."""
+
+from quantities.fuzz import G, PS, Q, R, VELVET
+from quantities.problem import Problem
+
+_PROBLEMS: dict[str, Problem] = {each.name: each for each in (PS, G, Q, R, VELVET)}
+
+
+def problems() -> dict[str, Problem]:
+    """Return all quantities by name, in the order in which they are listed."""
+    return dict(_PROBLEMS)
+
+
+def problem(name: str) -> Problem:
+    """Return a quantity; raises ValueError for a name that none has."""
+    if name not in _PROBLEMS:
+        raise ValueError(f"no quantity is called {name!r}: allowed are {', '.join(_PROBLEMS)}")
+    return _PROBLEMS[name]
+
+
+def register(new: Problem) -> Problem:
+    """Add a quantity; raises ValueError for a name that another one has."""
+    if new.name in _PROBLEMS and _PROBLEMS[new.name] is not new:
+        raise ValueError(f"a quantity is called {new.name!r} already: allowed is another name")
+    _PROBLEMS[new.name] = new
+    return new
+
+
+def unregister(name: str) -> None:
+    """Remove a quantity, if it is there."""
+    _PROBLEMS.pop(name, None)
