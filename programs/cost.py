@@ -1,4 +1,4 @@
-"""What a function costs: its operations, by kind."""
+"""The cost of a function: the number of its operations, by kind."""
 
 from collections import Counter
 from collections.abc import Collection
@@ -7,20 +7,23 @@ from dataclasses import dataclass, fields
 from programs.operations import OPERATIONS
 from programs.program import Program, is_value
 
-# What an operation of each kind weighs against an addition: a rule of thumb for graphics hardware,
-# where reciprocals, roots and transcendental functions run at a quarter of the rate, a division is
-# a reciprocal and a product, a function is one such instruction with its scaling, and a sign is
-# part of the operation that takes it.
+# The kinds of operations, in the order of reports, and the cost of each in additions. It is a rule
+# of thumb for graphics hardware: reciprocals, roots and transcendental functions run at a quarter
+# of the rate of an addition; a division is a reciprocal and a product; a transcendental function
+# needs a second such instruction to scale its argument; a sign costs nothing, since it is part of
+# the instruction that uses the value.
 WEIGHTS = {"add": 1, "mul": 1, "div": 5, "sqrt": 4, "transcendental": 8, "select": 1, "sign": 0}
+KINDS = tuple(WEIGHTS)
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Operations by kind.
+    """The number of operations of each kind; the fields are those of KINDS, and `fma`.
 
-    `add` counts additions and subtractions, `select` comparisons, selections, minima, maxima and
-    roundings to whole numbers, `sign` negations and absolute values. `fma` counts the additions
-    that could take up a product that nothing else uses: they are counted under `add` and `mul` too.
+    `add` counts additions and subtractions; `select` counts comparisons, selections, minima, maxima
+    and roundings to whole numbers; `sign` counts negations and absolute values. `fma` counts the
+    additions that could be fused with a product that nothing else uses. Such an addition and its
+    product are counted under `add` and `mul` too.
     """
 
     add: int = 0
@@ -34,24 +37,24 @@ class Cost:
 
     @property
     def operations(self) -> int:
-        """All operations but signs, each counted once."""
-        return sum(getattr(self, kind) for kind in WEIGHTS if kind != "sign")
+        """The number of all operations except signs."""
+        return sum(getattr(self, kind) for kind in KINDS if kind != "sign")
 
     @property
     def weighted(self) -> int:
-        """All operations, each with its entry in WEIGHTS."""
+        """The sum of all operations, each multiplied by its entry in WEIGHTS."""
         return sum(weight * getattr(self, kind) for kind, weight in WEIGHTS.items())
 
 
-def count(program: Program, varying: Collection[str] | None = None) -> Cost:
-    """Count the operations of a program.
+def count_operations(program: Program, varying: Collection[str] | None = None) -> Cost:
+    """Count the operations of a program by kind.
 
-    Arguments: `program`; `varying`, names of inputs (`alpha`; `c` for all of an array `c[0]`, …):
-    only operations that depend on one of them are counted, as those of a material are not when
-    they are done once for many directions. Returns the counts. Raises ValueError for a name that
-    is no input.
+    Arguments: `program`; `varying`, names of inputs (`x`, or `c` for a whole array `c[0]`, …), or
+    None for all. Only operations that depend on one of these inputs are counted, because the others
+    can be done once for many evaluations. Returns the counts. Raises ValueError for a name that is
+    not an input.
     """
-    changing = _changing(program, varying)
+    changing = _varying_values(program, varying)
     uses = Counter(o for step in program.steps for o in step.operands if is_value(o))
     uses.update(o for o in program.outputs if is_value(o))
     first = len(program.inputs)
@@ -71,7 +74,7 @@ def count(program: Program, varying: Collection[str] | None = None) -> Cost:
     return Cost(**{field.name: kinds[field.name] for field in fields(Cost)})
 
 
-def _changing(program: Program, varying: Collection[str] | None) -> set[int]:
+def _varying_values(program: Program, varying: Collection[str] | None) -> set[int]:
     if varying is None:
         return set(range(len(program.inputs) + len(program.steps)))
     arrays = [name.partition("[")[0] for name in program.inputs]

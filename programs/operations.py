@@ -1,4 +1,4 @@
-"""The operations of a straight-line program: the whole vocabulary of exported code."""
+"""The operations of a straight-line program. Exported code uses no others."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Operation:
-    """One operation: how many operands it has, what it computes, and what it costs.
+    """One operation: the number of its operands, its meaning, and the kind it is counted as.
 
-    `numpy` computes it element by element and rounds to the type of its operands; `kind` is the
-    heading it is counted under; `gives` is the type of its result, "real" or "bool". The operands
-    of a `commutative` operation may be exchanged without changing a bit of the result.
+    `numpy` computes it element by element and rounds the result to the type of the operands. `kind`
+    is a key of `programs.cost.WEIGHTS`. `gives` is the type of the result, "real" or "bool". If the
+    operation is `commutative`, exchanging its operands changes no bit of the result.
     """
 
     arity: int
@@ -49,7 +49,7 @@ OPERATIONS: dict[str, Operation] = {
     "and": Operation(2, np.logical_and, "select", gives="bool", commutative=True),
     "or": Operation(2, np.logical_or, "select", gives="bool", commutative=True),
     "not": Operation(1, np.logical_not, "select", gives="bool"),
-    # select(condition, value if it holds, value if not)
+    # select(condition, value if true, value if false)
     "select": Operation(3, np.where, "select"),
     "exp": Operation(1, np.exp, "transcendental"),
     "exp2": Operation(1, np.exp2, "transcendental"),

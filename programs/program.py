@@ -1,4 +1,4 @@
-"""Straight-line programs: inputs, a list of single assignments, outputs, and their evaluation."""
+"""Straight-line programs: inputs, a list of assignments and outputs; and their evaluation."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,8 +8,8 @@ import numpy as np
 
 from programs.operations import OPERATIONS
 
-# An operand is the number of a value (an int) or a constant (a float). Values are numbered from
-# zero: first the inputs, then the results of the steps, in order.
+# An operand is either a constant (a float) or the number of a value (an int). Values are numbered
+# from zero: first the inputs, then the result of each step, in order.
 Operand = int | float
 
 
@@ -17,7 +17,7 @@ Operand = int | float
 class Step:
     """One assignment: an operation (a key of OPERATIONS) and its operands.
 
-    `hint` is the name that the author of the function gave the result, or None.
+    `hint` is the name of the variable that the function's author assigned the result to, or None.
     """
 
     operation: str
@@ -27,10 +27,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Program:
-    """A function without branches or loops: what is printed, counted and evaluated.
+    """A function without branches or loops, as it is printed, counted, bounded and evaluated.
 
-    `inputs` are the names of the scalar inputs, `steps` the assignments (each only uses earlier
-    values), `outputs` the operands that are returned. Every step is used.
+    `inputs` are the names of the scalar inputs. `steps` are the assignments; each uses only values
+    before it, and an output depends on each. `outputs` are the operands that are returned.
     """
 
     name: str
@@ -40,13 +40,13 @@ class Program:
 
 
 def is_value(operand: Operand) -> TypeGuard[int]:
-    """Tell a number of a value from a constant."""
-    # bool is a subclass of int: conditions that are known are constants, no numbers of values.
+    """Return whether an operand is the number of a value; if not, it is a constant."""
+    # isinstance would not do: bool is a subclass of int, and True and False are constants.
     return type(operand) is int
 
 
-def reached(program: Program) -> set[int]:
-    """Give the numbers of the values that a program's outputs depend on, inputs included."""
+def reachable_values(program: Program) -> set[int]:
+    """Return the numbers of all values that the outputs depend on, inputs included."""
     needed = {operand for operand in program.outputs if is_value(operand)}
     first = len(program.inputs)
     for number in range(first + len(program.steps) - 1, first - 1, -1):
@@ -55,22 +55,25 @@ def reached(program: Program) -> set[int]:
     return needed
 
 
-def part(program: Program, outputs: Sequence[Operand]) -> Program:
-    """Give the program of some of a program's values: the steps that they need, renumbered."""
+def subprogram(program: Program, outputs: Sequence[Operand]) -> Program:
+    """Return the program that computes `outputs`, which are values of `program`, and no more.
+
+    It has the same inputs. Steps that are not needed are left out, and the rest is renumbered.
+    """
     first = len(program.inputs)
-    needed = reached(replace(program, outputs=tuple(outputs)))
+    needed = reachable_values(replace(program, outputs=tuple(outputs)))
     kept = [number for number in sorted(needed) if number >= first]
     renumbered = {**{k: k for k in range(first)}, **{old: first + k for k, old in enumerate(kept)}}
 
-    def moved(operands: Sequence[Operand]) -> tuple[Operand, ...]:
+    def renumber(operands: Sequence[Operand]) -> tuple[Operand, ...]:
         return tuple(renumbered[o] if is_value(o) else float(o) for o in operands)
 
     steps = (program.steps[number - first] for number in kept)
     return Program(
         program.name,
         program.inputs,
-        tuple(replace(step, operands=moved(step.operands)) for step in steps),
-        moved(outputs),
+        tuple(replace(step, operands=renumber(step.operands)) for step in steps),
+        renumber(outputs),
     )
 
 
@@ -80,11 +83,12 @@ def interpret(
     operations: Mapping[str, Callable[..., Any]],
     constant: Callable[[float], Any],
 ) -> tuple[Any, ...]:
-    """Evaluate a program over any kind of number: intervals, arrays, counters.
+    """Evaluate a program with any kind of number: arrays, intervals, symbols.
 
-    Arguments: `inputs`, one value an input; `operations`, what to call for each key of OPERATIONS
-    that occurs; `constant`, which makes such a number of a float. Returns one value an output.
-    Raises ValueError when the number of inputs is wrong or an operation is missing.
+    Arguments: `inputs`, one number for each input; `operations`, a function for each operation (a
+    key of OPERATIONS) that occurs; `constant`, which converts a float to that kind of number.
+    Returns one number for each output. Raises ValueError when the number of inputs is wrong or an
+    operation is missing.
     """
     if len(inputs) != len(program.inputs):
         raise ValueError(
@@ -108,11 +112,12 @@ def interpret(
 def evaluate(
     program: Program, inputs: np.ndarray, dtype: type[np.floating] = np.float64
 ) -> np.ndarray:
-    """Evaluate a program at many points, every operation rounded to `dtype`.
+    """Evaluate a program at many points with NumPy; every operation is rounded to `dtype`.
 
-    Arguments: `inputs` (n, k), one row a point, rounded to `dtype` first; `dtype`, np.float16,
-    np.float32 or np.float64. Returns (n, m) in `dtype`. Outside a function's domain the result is
-    NaN or infinite, as in the printed code. Raises ValueError when the columns are not the inputs.
+    Arguments: `inputs` (n, k), one row for each point and one column for each input, rounded to
+    `dtype` first; `dtype`, np.float16, np.float32 or np.float64. Returns (n, m) in `dtype`, one
+    column for each output. Where an operation is undefined the result is NaN or infinite, as in
+    printed code. Raises ValueError for inputs of another shape.
     """
     rows = np.asarray(inputs, dtype)
     if rows.ndim != 2:

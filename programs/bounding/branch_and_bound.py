@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from programs.bounding.interval import enclose_with_slopes
-from programs.program import Program, evaluate, reached
+from programs.program import Program, evaluate, reachable_values
 
 MAX_BOXES = 400_000
 # A box that has shrunk to this part of the first and is not settled may well hold a zero.
@@ -47,7 +47,7 @@ def bound_output(
     lower, upper = np.asarray(box, float).T
     low, high = _pieces(lower, upper, MATERIALS if len(lower) > len(MATERIALS) else ())
     # An input that the output does not depend on is never split.
-    used = np.array([k in reached(program) for k in range(len(lower))])
+    used = np.array([k in reachable_values(program) for k in range(len(lower))])
     scale = np.where(used, (high - low)[0], np.inf)
     # No box's middle is a corner of the domain, where values are often the least and the largest.
     points = np.array(list(product(*zip(lower, upper, strict=True))))

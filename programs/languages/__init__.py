@@ -17,19 +17,19 @@ from programs.languages import (
     slang,
     wgsl,
 )
-from programs.languages.language import PRECISIONS as PRECISIONS
-from programs.languages.language import Spelling as Spelling
-from programs.languages.language import Target as Target
-from programs.languages.language import shortest as shortest
+from programs.languages.spelling import PRECISIONS as PRECISIONS
+from programs.languages.spelling import Spelling as Spelling
+from programs.languages.spelling import Language as Language
+from programs.languages.spelling import shortest as shortest_decimal
 
-TARGETS: dict[str, Target] = {
-    module.TARGET.key: module.TARGET
+LANGUAGES: dict[str, Language] = {
+    module.LANGUAGE.key: module.LANGUAGE
     for module in (c, cpp, hlsl, glsl, slang, metal, wgsl, osl, cuda, python, javascript)
 }
 
 
-def target(key: str) -> Target:
+def target(key: str) -> Language:
     """Give the target of a key; raises ValueError for one that there is none of."""
-    if key not in TARGETS:
-        raise ValueError(f"target {key!r} is unknown; allowed: {', '.join(TARGETS)}")
-    return TARGETS[key]
+    if key not in LANGUAGES:
+        raise ValueError(f"target {key!r} is unknown; allowed: {', '.join(LANGUAGES)}")
+    return LANGUAGES[key]

@@ -8,18 +8,18 @@ from programs.languages.c_family import (
     reciprocal_root,
     suffixed,
 )
-from programs.languages.language import Binding, Spelling, Target, spell
+from programs.languages.spelling import Precedence, Spelling, Language, spell
 
 _FLOAT = spell(suffixed(MATH, "f") | reciprocal_root("1.0f", "sqrtf") | SELECTION | COMPARED)
 _DOUBLE = spell(MATH | reciprocal_root("1.0", "sqrt") | SELECTION | COMPARED)
 
 # There are no half functions: compute in float and round.
 _HALF = {
-    operation: Spelling(f"(_Float16)({how.template})", Binding.SIGN)
+    operation: Spelling(f"(_Float16)({how.template})", Precedence.SIGN)
     for operation, how in _FLOAT.items()
 } | spell(SELECTION | COMPARED)
 
-TARGET = Target(
+LANGUAGE = Language(
     key="c",
     name="C",
     extension="c",
@@ -29,5 +29,5 @@ TARGET = Target(
     reserved=C_WORDS,
     prologue={precision: ("#include <math.h>",) for precision in ("half", "float", "double")},
     boolean="int",
-    array_in="const {type} {name}[{size}]",
+    array_argument="const {type} {name}[{size}]",
 )

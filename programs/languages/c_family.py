@@ -1,13 +1,13 @@
 """What the descendants of C have in common: the words, the functions, the way to select."""
 
-from programs.languages.language import Binding, Spelling, words
+from programs.languages.spelling import Precedence, Spelling, words
 
-SELECTION = {"select": Spelling("{0} ? {1} : {2}", Binding.SELECTION)}
+SELECTION = {"select": Spelling("{0} ? {1} : {2}", Precedence.SELECTION)}
 
 # C has no cheap minimum: fminf is a call that must mind NaN. A comparison is one instruction.
 COMPARED = {
-    "min": Spelling("{0} < {1} ? {0} : {1}", Binding.SELECTION, atoms=True),
-    "max": Spelling("{0} > {1} ? {0} : {1}", Binding.SELECTION, atoms=True),
+    "min": Spelling("{0} < {1} ? {0} : {1}", Precedence.SELECTION, atoms=True),
+    "max": Spelling("{0} > {1} ? {0} : {1}", Precedence.SELECTION, atoms=True),
 }
 
 # Functions that go by the same name in every shading language that has a common ancestor in C.
@@ -51,4 +51,4 @@ def suffixed(names: dict[str, str], suffix: str) -> dict[str, str]:
 
 def reciprocal_root(one: str, root: str) -> dict[str, Spelling]:
     """Spell the reciprocal square root where there is no function for it."""
-    return {"rsqrt": Spelling(f"{one} / {root}({{0}})", Binding.PRODUCT)}
+    return {"rsqrt": Spelling(f"{one} / {root}({{0}})", Precedence.PRODUCT)}

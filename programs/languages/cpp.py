@@ -7,7 +7,7 @@ from programs.languages.c_family import (
     SELECTION,
     reciprocal_root,
 )
-from programs.languages.language import Spelling, Target, spell
+from programs.languages.spelling import Spelling, Language, spell
 
 _STANDARD = {operation: f"std::{name}" for operation, name in MATH.items()} | {"abs": "std::abs"}
 _FLOAT = spell(_STANDARD | reciprocal_root("1.0f", "std::sqrt") | SELECTION | COMPARED)
@@ -21,7 +21,7 @@ _HALF = {
     for operation, how in _FLOAT.items()
 } | spell(SELECTION | COMPARED)
 
-TARGET = Target(
+LANGUAGE = Language(
     key="cpp",
     name="C++",
     extension="cpp",
@@ -30,6 +30,6 @@ TARGET = Target(
     functions={"half": _HALF, "float": _FLOAT, "double": _DOUBLE},
     reserved=CPP_WORDS,
     prologue={precision: ("#include <cmath>",) for precision in ("half", "float", "double")},
-    array_in="const {type} (&{name})[{size}]",
-    array_out="{type} (&{name})[{size}]",
+    array_argument="const {type} (&{name})[{size}]",
+    array_result="{type} (&{name})[{size}]",
 )

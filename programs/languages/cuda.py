@@ -1,12 +1,12 @@
 """CUDA C++, for the device and for the host."""
 
 from programs.languages.c_family import CPP_WORDS, MATH, SELECTION, reciprocal_root, suffixed
-from programs.languages.language import Target, spell, words
+from programs.languages.spelling import Language, spell, words
 
 # On a device the minimum is one instruction, and fminf is its name on both sides.
 _MATH = MATH | {"min": "fmin", "max": "fmax"}
 
-TARGET = Target(
+LANGUAGE = Language(
     key="cuda",
     name="CUDA",
     extension="cu",
@@ -22,9 +22,9 @@ TARGET = Target(
         "gridDim warpSize half float2 float3 float4 double2 double3 double4 dim3",
     ),
     prologue={precision: ("#include <math.h>",) for precision in ("float", "double")},
-    array_in="const {type} (&{name})[{size}]",
-    array_out="{type} (&{name})[{size}]",
-    head_one="__host__ __device__ {type} {function}({arguments})",
-    head_many="__host__ __device__ void {function}({arguments})",
+    array_argument="const {type} (&{name})[{size}]",
+    array_result="{type} (&{name})[{size}]",
+    scalar_head="__host__ __device__ {type} {function}({arguments})",
+    array_head="__host__ __device__ void {function}({arguments})",
     table_opening="const {type} {name}[{size}] = {{",
 )

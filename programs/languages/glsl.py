@@ -1,7 +1,7 @@
 """GLSL 4.00 and ESSL 3.00; half needs an extension, doubles have no function but roots."""
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
-from programs.languages.language import Spelling, Target, spell, words
+from programs.languages.spelling import Spelling, Language, spell, words
 
 _FUNCTIONS = spell(
     SHADING | {"rsqrt": "inversesqrt", "atan2": Spelling("atan({0}, {1})")} | SELECTION
@@ -11,7 +11,7 @@ _DOUBLE = {
     for operation in ("abs", "sqrt", "rsqrt", "min", "max", "floor", "ceil", "select")
 }
 
-TARGET = Target(
+LANGUAGE = Language(
     key="glsl",
     name="GLSL",
     extension="glsl",
@@ -33,10 +33,10 @@ TARGET = Target(
         "float": (),
         "double": (),
     },
-    array_in="in {type} {name}[{size}]",
-    array_out="out {type} {name}[{size}]",
+    array_argument="in {type} {name}[{size}]",
+    array_result="out {type} {name}[{size}]",
     # Before GLSL 4.20 a const local must be a constant expression.
-    local="{type} {name} = {value};",
+    local_variable="{type} {name} = {value};",
     table_opening="const {type} {name}[{size}] = {type}[{size}](",
     table_closing=");",
 )

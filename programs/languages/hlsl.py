@@ -1,7 +1,7 @@
 """HLSL, shader model 6 (half needs -enable-16bit-types to be 16 bits wide)."""
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
-from programs.languages.language import Target, spell, words
+from programs.languages.spelling import Language, spell, words
 
 FUNCTIONS = spell(SHADING | {"atan2": "atan2", "rsqrt": "rsqrt"} | SELECTION)
 
@@ -23,7 +23,7 @@ WORDS = C_WORDS | words(
     "float16_t float32_t float64_t typename using virtual operator",
 )
 
-TARGET = Target(
+LANGUAGE = Language(
     key="hlsl",
     name="HLSL",
     extension="hlsl",
@@ -32,6 +32,6 @@ TARGET = Target(
     functions={"half": FUNCTIONS, "float": FUNCTIONS, "double": DOUBLE},
     reserved=WORDS,
     prologue={precision: () for precision in ("half", "float", "double")},
-    array_in="in {type} {name}[{size}]",
-    array_out="out {type} {name}[{size}]",
+    array_argument="in {type} {name}[{size}]",
+    array_result="out {type} {name}[{size}]",
 )

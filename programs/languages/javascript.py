@@ -1,7 +1,7 @@
 """JavaScript: its only number is a double."""
 
 from programs.languages.c_family import MATH, SELECTION
-from programs.languages.language import Binding, Spelling, Target, spell, words
+from programs.languages.spelling import Precedence, Spelling, Language, spell, words
 
 _NAMES = {operation: f"Math.{name}" for operation, name in MATH.items()} | {
     "abs": "Math.abs",
@@ -10,12 +10,12 @@ _NAMES = {operation: f"Math.{name}" for operation, name in MATH.items()} | {
 }
 _OTHERS = {
     "exp2": Spelling("Math.pow(2.0, {0})"),
-    "rsqrt": Spelling("1.0 / Math.sqrt({0})", Binding.PRODUCT),
-    "eq": Spelling("{0} === {1}", Binding.EQUALITY),
-    "ne": Spelling("{0} !== {1}", Binding.EQUALITY),
+    "rsqrt": Spelling("1.0 / Math.sqrt({0})", Precedence.PRODUCT),
+    "eq": Spelling("{0} === {1}", Precedence.EQUALITY),
+    "ne": Spelling("{0} !== {1}", Precedence.EQUALITY),
 }
 
-TARGET = Target(
+LANGUAGE = Language(
     key="javascript",
     name="JavaScript",
     extension="js",
@@ -31,13 +31,13 @@ TARGET = Target(
         "Infinity",
     ),
     prologue={"double": ()},
-    scalar_in="{name}",
-    array_in="{name}",
-    array_out="",
-    head_one="function {function}({arguments})",
-    head_many="function {function}({arguments})",
-    local="const {name} = {value};",
-    several="return [{values}];",
+    scalar_argument="{name}",
+    array_argument="{name}",
+    array_result="",
+    scalar_head="function {function}({arguments})",
+    array_head="function {function}({arguments})",
+    local_variable="const {name} = {value};",
+    return_all="return [{values}];",
     table_opening="const {name} = [",
     table_closing="];",
 )

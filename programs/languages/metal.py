@@ -1,7 +1,7 @@
 """The Metal shading language."""
 
 from programs.languages.c_family import CPP_WORDS, SELECTION, SHADING
-from programs.languages.language import Target, spell, words
+from programs.languages.spelling import Language, spell, words
 
 _FUNCTIONS = spell(
     {
@@ -11,7 +11,7 @@ _FUNCTIONS = spell(
     | SELECTION
 )
 
-TARGET = Target(
+LANGUAGE = Language(
     key="metal",
     name="Metal",
     extension="metal",
@@ -25,8 +25,8 @@ TARGET = Target(
         "array vec access ray_data object_data",
     ),
     prologue={precision: ("#include <metal_stdlib>",) for precision in ("half", "float")},
-    array_in="thread const {type} (&{name})[{size}]",
-    array_out="thread {type} (&{name})[{size}]",
+    array_argument="thread const {type} (&{name})[{size}]",
+    array_result="thread {type} (&{name})[{size}]",
     # A function's static constants have no address space of their own.
     table_opening="const {type} {name}[{size}] = {{",
 )

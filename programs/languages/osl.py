@@ -1,9 +1,9 @@
 """The Open Shading Language: floats only, and no constants but by good will."""
 
 from programs.languages.c_family import SELECTION, SHADING
-from programs.languages.language import Target, spell, words
+from programs.languages.spelling import Language, spell, words
 
-TARGET = Target(
+LANGUAGE = Language(
     key="osl",
     name="OSL",
     extension="osl",
@@ -24,7 +24,7 @@ TARGET = Target(
     ),
     prologue={"float": ()},
     boolean="int",
-    array_out="output {type} {name}[{size}]",
-    local="{type} {name} = {value};",
+    array_result="output {type} {name}[{size}]",
+    local_variable="{type} {name} = {value};",
     table_opening="{type} {name}[{size}] = {{",
 )

@@ -3,7 +3,7 @@
 import keyword
 
 from programs.languages.c_family import MATH
-from programs.languages.language import Binding, Spelling, Target, spell, words
+from programs.languages.spelling import Precedence, Spelling, Language, spell, words
 
 _NAMES = {operation: f"np.{name}" for operation, name in MATH.items()} | {
     "abs": "np.abs",
@@ -21,13 +21,13 @@ _NAMES = {operation: f"np.{name}" for operation, name in MATH.items()} | {
 _FUNCTIONS = spell(
     {
         **_NAMES,
-        "rsqrt": Spelling("1.0 / np.sqrt({0})", Binding.PRODUCT),
+        "rsqrt": Spelling("1.0 / np.sqrt({0})", Precedence.PRODUCT),
         "select": Spelling("np.where({0}, {1}, {2})"),
     }
 )
 _TYPES = {"half": "np.float16", "float": "np.float32", "double": "np.float64"}
 
-TARGET = Target(
+LANGUAGE = Language(
     key="python",
     name="Python",
     extension="py",
@@ -38,20 +38,20 @@ TARGET = Target(
     reserved=frozenset(keyword.kwlist) | words("np print len range float int match case type"),
     prologue=dict.fromkeys(_TYPES, ("import numpy as np",)),
     comment="#",
-    scalar_in="{name}",
-    array_in="{name}",
-    array_out="",
-    head_one="def {function}({arguments}):",
-    head_many="def {function}({arguments}):",
-    opening=None,
-    closing=None,
-    local="{name} = {value}",
-    give="return {value}",
-    several="return ({values})",
+    scalar_argument="{name}",
+    array_argument="{name}",
+    array_result="",
+    scalar_head="def {function}({arguments}):",
+    array_head="def {function}({arguments}):",
+    body_opening=None,
+    body_closing=None,
+    local_variable="{name} = {value}",
+    return_statement="return {value}",
+    return_all="return ({values})",
     table_opening="{name} = (",
     table_closing=")",
-    receive_scalar="{name} = np.asarray({name}, {type})",
-    receive_array="{name} = [np.asarray(each, {type}) for each in {name}]",
-    lone_literal="{type}({})",
-    bracketed=True,
+    scalar_conversion="{name} = np.asarray({name}, {type})",
+    array_conversion="{name} = [np.asarray(each, {type}) for each in {name}]",
+    typed_literal="{type}({})",
+    parenthesize_lines=True,
 )

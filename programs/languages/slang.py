@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from programs.languages.hlsl import FUNCTIONS, WORDS
-from programs.languages.hlsl import TARGET as HLSL
-from programs.languages.language import words
+from programs.languages.hlsl import LANGUAGE as HLSL
+from programs.languages.spelling import words
 
 # More functions of doubles compile, but on what Slang compiles to they have no meaning (measured:
 # through SPIR-V, sin of a double is NaN).
@@ -13,7 +13,7 @@ _DOUBLE = {
     for operation in ("abs", "sqrt", "rsqrt", "min", "max", "floor", "ceil", "select")
 }
 
-TARGET = replace(
+LANGUAGE = replace(
     HLSL,
     key="slang",
     name="Slang",

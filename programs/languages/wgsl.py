@@ -1,7 +1,7 @@
 """WGSL, the shading language of WebGPU."""
 
 from programs.languages.c_family import SHADING
-from programs.languages.language import Spelling, Target, spell, words
+from programs.languages.spelling import Spelling, Language, spell, words
 
 _FUNCTIONS = spell(
     SHADING
@@ -12,7 +12,7 @@ _FUNCTIONS = spell(
     }
 )
 
-TARGET = Target(
+LANGUAGE = Language(
     key="wgsl",
     name="WGSL",
     extension="wgsl",
@@ -39,13 +39,13 @@ TARGET = Target(
         "mat3x3 mat4x4 sampler _",
     ),
     prologue={"half": ("enable f16;",), "float": ()},
-    scalar_in="{name}: {type}",
-    array_in="{name}: array<{type}, {size}>",
-    array_out="{name}: ptr<function, array<{type}, {size}>>",
-    head_one="fn {function}({arguments}) -> {type}",
-    head_many="fn {function}({arguments})",
-    local="let {name} = {value};",
-    store="(*{name})[{index}] = {value};",
+    scalar_argument="{name}: {type}",
+    array_argument="{name}: array<{type}, {size}>",
+    array_result="{name}: ptr<function, array<{type}, {size}>>",
+    scalar_head="fn {function}({arguments}) -> {type}",
+    array_head="fn {function}({arguments})",
+    local_variable="let {name} = {value};",
+    store_statement="(*{name})[{index}] = {value};",
     table_opening="const {name} = array<{type}, {size}>(",
     table_closing=");",
 )

@@ -41,7 +41,7 @@ def _ascii(character: str) -> str:
     return f"^{plain}" if raised else plain or "?"
 
 
-def identifier(text: str) -> str:
+def as_identifier(text: str) -> str:
     """Make an identifier of a name: ASCII, no underscore in front, none doubled; may be empty."""
     word = re.sub(r"\W", "_", ascii_text(text).replace("^", ""))
     return re.sub(r"__+", "_", word).strip("_").lstrip("0123456789")
@@ -84,7 +84,7 @@ _PREFIXES = {
 _BOUNDS = {"min": "AtMost", "max": "AtLeast"}
 
 
-def describe(step: Step, operand_names: tuple[str | None, ...]) -> str | None:
+def descriptive_name(step: Step, operand_names: tuple[str | None, ...]) -> str | None:
     """Name the result of a step after its operands: alpha2, b3, sinThetaF, oneMinusAlpha, ….
 
     Arguments: `step`; `operand_names`, an identifier for each operand that has one, else None.

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 WIDTH = 100
-STEP = "    "
+INDENT = "    "
 
 
 @dataclass(frozen=True)
 class Break:
     """A place where a line may be broken; between pieces that stay on a line it is a space.
 
-    The outermost places have depth 0; the deeper, the later a line is broken there.
+    The outermost places have depth 0; the nested, the later a line is broken there.
     """
 
     depth: int = 0
@@ -21,27 +21,29 @@ class Break:
 Tokens = list[str | Break]
 
 
-def deeper(tokens: Sequence[str | Break], levels: int = 1) -> Tokens:
+def nested(tokens: Sequence[str | Break], levels: int = 1) -> Tokens:
     """Put an expression inside another one: its places to break become less welcome."""
     return [Break(t.depth + levels) if isinstance(t, Break) else t for t in tokens]
 
 
-def flat(tokens: Sequence[str | Break]) -> str:
+def on_one_line(tokens: Sequence[str | Break]) -> str:
     """Write an expression on one line."""
     return "".join(" " if isinstance(token, Break) else token for token in tokens)
 
 
-def lay_out(tokens: Sequence[str | Break], indent: str, following: str | None = None) -> list[str]:
+def break_lines(
+    tokens: Sequence[str | Break], indent: str, following: str | None = None
+) -> list[str]:
     """Write a statement on as few lines as its length asks for.
 
     Arguments: `tokens` of the whole statement; `indent` of its first line; `following`, of the
-    others, one step deeper by default. Returns the lines, none longer than WIDTH unless a single
+    others, one step nested by default. Returns the lines, none longer than WIDTH unless a single
     word is.
     """
-    if len(indent) + len(flat(tokens)) <= WIDTH:
-        return [indent + flat(tokens)]
+    if len(indent) + len(on_one_line(tokens)) <= WIDTH:
+        return [indent + on_one_line(tokens)]
     lines = [indent]
-    _fill(lines, list(tokens), indent + STEP if following is None else following, False)
+    _fill(lines, list(tokens), indent + INDENT if following is None else following, False)
     return lines
 
 
@@ -67,7 +69,7 @@ def _fill(lines: list[str], tokens: Tokens, indent: str, after_break: bool) -> N
     """
     depths = [token.depth for token in tokens if isinstance(token, Break)]
     for piece in _split(tokens, min(depths)) if depths else [tokens]:
-        text = flat(piece)
+        text = on_one_line(piece)
         space = " " if after_break else ""
         divisible = len(depths) > 0 and any(isinstance(token, Break) for token in piece)
         if len(lines[-1]) + len(space) + len(text) <= WIDTH:

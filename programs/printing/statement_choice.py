@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from programs.languages import Target
+from programs.languages import Language
 from programs.printing.expression import spelling
-from programs.printing.identifiers import describe, free_name, identifier
+from programs.printing.identifiers import as_identifier, descriptive_name, free_name
 from programs.program import Operand, Program, is_value
 
 # The longest expression that is still read at a glance, in operations.
@@ -28,7 +28,7 @@ class Statements:
 def choose_statements(
     program: Program,
     input_texts: tuple[str, ...],
-    target: Target,
+    language: Language,
     precision: str,
     taken: Collection[str],
 ) -> Statements:
@@ -40,7 +40,7 @@ def choose_statements(
     first = len(program.inputs)
     uses = Counter(o for step in program.steps for o in step.operands if is_value(o))
     uses.update(o for o in program.outputs if is_value(o))
-    repeated = _repeated(program, target, precision)
+    repeated = _repeated(program, language, precision)
     names = dict(enumerate(input_texts))
     used = set(taken)
     sizes: dict[int, int] = {}
@@ -49,7 +49,7 @@ def choose_statements(
     for value, step in enumerate(program.steps, start=first):
         inner = [o for o in step.operands if is_value(o) and o not in names]
         sizes[value] = size = 1 + sum(sizes[o] for o in inner)
-        is_call = spelling(target, precision, step.operation) is not None
+        is_call = spelling(language, precision, step.operation) is not None
         depths[value] = depth = is_call + max((depths[o] for o in inner), default=0)
         is_output = any(is_value(o) and o == value for o in program.outputs)
         # A sign before a name costs nothing and says more than another name.
@@ -65,16 +65,16 @@ def choose_statements(
     return Statements(tuple(chosen), names)
 
 
-def _repeated(program: Program, target: Target, precision: str) -> dict[int, str | None]:
+def _repeated(program: Program, language: Language, precision: str) -> dict[int, str | None]:
     """Find the values that are written more than once where they are used once, and name them.
 
     (A minimum that is spelled as a comparison writes its operands twice.)
     """
     found: dict[int, str | None] = {}
     for step in program.steps:
-        how = spelling(target, precision, step.operation)
+        how = spelling(language, precision, step.operation)
         if how is not None and how.atoms:
-            name = identifier(step.hint or "")
+            name = as_identifier(step.hint or "")
             for operand in step.operands:
                 if is_value(operand) and operand >= len(program.inputs):
                     found[operand] = f"{name}Raw" if name else None
@@ -83,7 +83,7 @@ def _repeated(program: Program, target: Target, precision: str) -> dict[int, str
 
 def _wanted_name(program: Program, value: int, names: dict[int, str]) -> str | None:
     step = program.steps[value - len(program.inputs)]
-    hint = identifier(step.hint or "")
+    hint = as_identifier(step.hint or "")
     if hint in program.inputs and step.operation in ("min", "max"):
         # alpha = clip(alpha, …): an argument and its clamped value need two names.
         return f"{hint}Clamped"
@@ -97,9 +97,9 @@ def _description(program: Program, value: int, names: dict[int, str]) -> str | N
         if not is_value(operand):
             return None
         if operand in names:
-            return identifier(names[operand])
+            return as_identifier(names[operand])
         # b·b has no name where b·b·b is all that it is used for, but it is b2 for all that.
         inner = program.steps[operand - len(program.inputs)]
         return _description(program, operand, names) if inner.operation == "mul" else None
 
-    return describe(step, tuple(map(name, step.operands)))
+    return descriptive_name(step, tuple(map(name, step.operands)))

@@ -8,4 +8,4 @@ beyond NumPy is imported, and no program is started, before it is asked for.
 from programs.toolchains.process import ToolchainError as ToolchainError
 from programs.toolchains.registry import TOOLCHAINS as TOOLCHAINS
 from programs.toolchains.registry import toolchain as toolchain
-from programs.toolchains.toolchain import Toolchain as Toolchain
+from programs.toolchains.interface import Toolchain as Toolchain

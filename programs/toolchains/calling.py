@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from textwrap import indent
 
-from programs.function import Function
-from programs.toolchains.toolchain import result_count
+from programs.functions import Function
+from programs.toolchains.interface import result_count
 
 
-def call(
+def call_statements(
     function: Function,
     real: str,
     number: Callable[[int], str],

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from programs.function import Function, input_names
-from programs.toolchains.calling import call
+from programs.functions import Function, input_names
+from programs.toolchains.calling import call_statements
 from programs.toolchains.native import (
     STRICT,
     evaluate_program,
@@ -14,14 +14,14 @@ from programs.toolchains.native import (
     values_from,
 )
 from programs.toolchains.process import (
-    absent,
+    missing_command,
     execute,
     first_line,
-    packaged,
-    program,
+    packaged_file,
+    command_path,
     workspace,
 )
-from programs.toolchains.toolchain import breakdown, refusal, result_count
+from programs.toolchains.interface import run_failure, compile_failure, result_count
 
 NOTE = (
     "no GPU here: with nvcc the device code is compiled to machine code but only the host's half "
@@ -35,9 +35,9 @@ _SHIM = Path(__file__).with_name("shims") / "cuda.h"
 _MACHINE = "sm_75"
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
-    reason = absent("g++", "g++")
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
+    reason = missing_command("g++", "g++")
     if reason is None and precision == "half" and _compiler() is None:
         reason = "nvcc, which brings __half, is not here (PyPI: nvidia-cuda-nvcc)"
     return reason
@@ -49,7 +49,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
     if compiler is None:
         shim = ("g++", "-std=c++17", *STRICT, "-include", _SHIM)
         return evaluate_program("CUDA", shim, ".cpp", real, source, function, inputs, precision)
-    failure = breakdown("CUDA", function, precision)
+    failure = run_failure("CUDA", function, precision)
     with workspace() as folder:
         (folder / "code.cu").write_text(_with_half(source, precision), encoding="utf-8")
         text = main_program(function, "code.cu", real) + kernel(function, real)
@@ -60,7 +60,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
                 *("-Xcompiler", "-ffp-contract=off", *_library_flags(compiler)),
                 *("main.cu", "-o", "program"),
             ],
-            failure=refusal("CUDA", function, precision),
+            failure=compile_failure("CUDA", function, precision),
             folder=folder,
         )
         data = execute([folder / "program"], failure=failure, folder=folder, data=inputs.tobytes())
@@ -70,7 +70,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 def kernel(function: Function, real: str) -> str:
     """Write a kernel that calls the function, so that the device's half is compiled to the end."""
     count, width = result_count(function), len(input_names(function))
-    body = call(
+    body = call_statements(
         function,
         real,
         lambda cell: f"shadefit_in[{cell}]",
@@ -100,7 +100,7 @@ def _with_half(source: str, precision: str) -> str:
 
 
 def _compiler() -> Path | None:
-    return packaged("nvidia", "cu13/bin/nvcc") or program("nvcc")
+    return packaged_file("nvidia", "cu13/bin/nvcc") or command_path("nvcc")
 
 
 def _library_flags(compiler: Path) -> tuple[str, ...]:

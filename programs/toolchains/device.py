@@ -16,9 +16,9 @@ from typing import IO, Any
 
 import numpy as np
 
-from programs.function import Function
-from programs.toolchains.process import TIME_LIMIT, ToolchainError, packaged, quiet_environment
-from programs.toolchains.toolchain import breakdown, refusal, result_count
+from programs.functions import Function
+from programs.toolchains.process import TIME_LIMIT, ToolchainError, packaged_file, quiet_environment
+from programs.toolchains.interface import run_failure, compile_failure, result_count
 
 # What the optional number types need; float needs nothing.
 FEATURES = {"half": "shader-f16", "double": "shader-f64"}
@@ -36,7 +36,7 @@ _workers: list[_Worker] = []
 _failures: list[str] = []
 
 
-def absence(precision: str) -> str | None:
+def missing_reason(precision: str) -> str | None:
     """None when a Vulkan device can compute in a precision; else the reason."""
     try:
         device = _worker().device
@@ -76,7 +76,7 @@ def evaluate(
     rows, width = inputs.shape
     count = result_count(function)
     data = inputs.astype(kind).tobytes()
-    failure = breakdown(language, function, precision)
+    failure = run_failure(language, function, precision)
     try:
         worker.connection.send((code, data, rows, kind.itemsize, width, count))
         if not worker.connection.poll(TIME_LIMIT):
@@ -86,7 +86,7 @@ def evaluate(
     except (EOFError, OSError) as error:
         raise ToolchainError(f"{failure}: the device's process ended", _end(worker)) from error
     if complaint is not None:
-        raise ToolchainError(refusal(language, function, precision), complaint)
+        raise ToolchainError(compile_failure(language, function, precision), complaint)
     return np.frombuffer(reply, kind).reshape(rows, count).astype(np.float64)
 
 
@@ -95,7 +95,7 @@ def _worker() -> _Worker:
         return _workers[-1]
     if _failures:
         raise ToolchainError(_failures[-1])
-    if packaged("wgpu", "__init__.py") is None:
+    if packaged_file("wgpu", "__init__.py") is None:
         raise ToolchainError("wgpu is not installed (PyPI: wgpu)")
     try:
         _workers.append(_start())

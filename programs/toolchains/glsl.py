@@ -4,11 +4,11 @@ import re
 
 import numpy as np
 
-from programs.function import Function
+from programs.functions import Function
 from programs.toolchains import device
-from programs.toolchains.process import absent, execute, first_line, workspace
+from programs.toolchains.process import missing_command, execute, first_line, workspace
 from programs.toolchains.shader import STORED, main_body
-from programs.toolchains.toolchain import refusal
+from programs.toolchains.interface import compile_failure
 
 NOTE = (
     "GLSL 4.50; the device's inverse trigonometric functions may be off by 4e-4, its exp, log and "
@@ -19,9 +19,9 @@ _REAL = {"half": "float16_t", "float": "float", "double": "double"}
 _EXTENSION = "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require"
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
-    return absent("glslangValidator", "glslang-tools") or device.absence(precision)
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
+    return missing_command("glslangValidator", "glslang-tools") or device.missing_reason(precision)
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
@@ -32,7 +32,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
         )
         execute(
             ["glslangValidator", "-V", "--target-env", "vulkan1.2", "code.comp", "-o", "code.spv"],
-            failure=refusal("GLSL", function, precision),
+            failure=compile_failure("GLSL", function, precision),
             folder=folder,
         )
         code = (folder / "code.spv").read_bytes()

@@ -7,18 +7,18 @@ from platform import machine
 
 import numpy as np
 
-from programs.function import Function
+from programs.functions import Function
 from programs.toolchains import device
 from programs.toolchains.process import (
     ToolchainError,
-    absent,
+    missing_command,
     execute,
     first_line,
-    packaged,
+    packaged_file,
     workspace,
 )
 from programs.toolchains.shader import hlsl_shader
-from programs.toolchains.toolchain import refusal
+from programs.toolchains.interface import compile_failure
 
 NOTE = (
     "shader model 6.2 with 16-bit types, to SPIR-V, not DXIL; the device's inverse trigonometric "
@@ -30,15 +30,15 @@ _FLAGS = ("-E", "main", "-T", "cs_6_2", "-HV", "2021", "-enable-16bit-types", "-
 _DXC_FLAGS = (*_FLAGS, "-fspv-target-env=vulkan1.2")
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
     if _library() is None:
         if precision == "half":
             return "DXC, the compiler with 16-bit types, is not installed (PyPI: compushady-lrtu)"
-        reason = absent("glslangValidator", "glslang-tools")
+        reason = missing_command("glslangValidator", "glslang-tools")
         if reason is not None:
             return f"neither DXC (PyPI: compushady-lrtu) nor glslang: {reason}"
-    return device.absence(precision)
+    return device.missing_reason(precision)
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
@@ -46,7 +46,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
     text = hlsl_shader(source, function, precision)
     library = _library()
     compiled = _by_glslang if library is None else _by_dxc
-    code = compiled(text, refusal("HLSL", function, precision))
+    code = compiled(text, compile_failure("HLSL", function, precision))
     return device.evaluate("HLSL", code, function, inputs, precision)
 
 
@@ -61,7 +61,7 @@ def versions() -> str:
 
 def _library() -> Path | None:
     """Where DXC's library is: a package carries it, of which nothing else is used."""
-    return packaged("compushady", f"backends/libdxcompiler_{machine()}.so")
+    return packaged_file("compushady", f"backends/libdxcompiler_{machine()}.so")
 
 
 def _dxc(*arguments: str | Path) -> list[str | Path]:

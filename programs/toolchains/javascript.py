@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 
-from programs.function import Function
+from programs.functions import Function
 from programs.toolchains.native import values_from
-from programs.toolchains.process import absent, execute, first_line, workspace
-from programs.toolchains.toolchain import breakdown, refusal, result_count
+from programs.toolchains.process import missing_command, execute, first_line, workspace
+from programs.toolchains.interface import run_failure, compile_failure, result_count
 
 NOTE = "JavaScript computes in double only."
 
@@ -39,23 +39,23 @@ shadefitNode.writeFileSync("values", new Uint8Array(shadefitOut.buffer));
 """
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
     if precision != "double":
         return "JavaScript computes in double only"
-    return absent("node", "nodejs")
+    return missing_command("node", "nodejs")
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
     """As `Toolchain.evaluate`."""
     widths = json.dumps([parameter.size or 0 for parameter in function.parameters])
     main = _MAIN.format(widths=widths, count=result_count(function), name=function.name)
-    failure = breakdown("JavaScript", function, precision)
+    failure = run_failure("JavaScript", function, precision)
     with workspace() as folder:
         (folder / "code.js").write_text(source, encoding="utf-8")
         execute(
             ["node", "--check", "code.js"],
-            failure=refusal("JavaScript", function, precision),
+            failure=compile_failure("JavaScript", function, precision),
             folder=folder,
         )
         # One file: a function declared in a script is not seen from another module.

@@ -29,6 +29,6 @@ def refuse(source: str, rules: Iterable[tuple[re.Pattern[str], str]], failure: s
         raise ToolchainError(failure, "\n".join(complaints))
 
 
-def words(names: Iterable[str]) -> re.Pattern[str]:
+def whole_words(names: Iterable[str]) -> re.Pattern[str]:
     """Give the pattern that matches any of some words, whole."""
     return re.compile(rf"\b(?:{'|'.join(names)})\b")

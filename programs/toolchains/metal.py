@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from programs.function import Function
-from programs.toolchains.lexical import refuse, words
+from programs.functions import Function
+from programs.toolchains.lexical import refuse, whole_words
 from programs.toolchains.native import HALF, STRICT, evaluate_program, half_missing
-from programs.toolchains.process import absent, first_line
-from programs.toolchains.toolchain import refusal
+from programs.toolchains.process import missing_command, first_line
+from programs.toolchains.interface import compile_failure
 
 NOTE = (
     "a shim: Metal has no compiler here, so g++ compiles the code against a stand-in for "
@@ -18,7 +18,7 @@ NOTE = (
 
 # What C++ takes and Metal does not.
 _RULES = (
-    (words(["double"]), "Metal has no double"),
+    (whole_words(["double"]), "Metal has no double"),
     (
         re.compile(r"(?<!thread )(?<!thread const )(?<!constant )\b\w+\s*\(&"),
         "a reference needs an address space",
@@ -27,16 +27,16 @@ _RULES = (
 _SHIMS = Path(__file__).with_name("shims")
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
     if precision == "double":
         return "Metal has no double precision"
-    return absent("g++", "g++") or half_missing("g++", ".cpp")
+    return missing_command("g++", "g++") or half_missing("g++", ".cpp")
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
     """As `Toolchain.evaluate`."""
-    refuse(source, _RULES, refusal("Metal", function, precision))
+    refuse(source, _RULES, compile_failure("Metal", function, precision))
     compiler = (
         *("g++", "-std=c++17", *STRICT, *HALF),
         # In Metal a literal without a suffix is a float.

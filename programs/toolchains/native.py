@@ -6,10 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from programs.function import Function, input_names
-from programs.toolchains.calling import call
-from programs.toolchains.process import ToolchainError, absent, execute, first_line, workspace
-from programs.toolchains.toolchain import Toolchain, breakdown, refusal, result_count
+from programs.functions import Function, input_names
+from programs.toolchains.calling import call_statements
+from programs.toolchains.process import (
+    ToolchainError,
+    missing_command,
+    execute,
+    first_line,
+    workspace,
+)
+from programs.toolchains.interface import Toolchain, run_failure, compile_failure, result_count
 
 # No contraction to fma and no fast-math: every operation is rounded once, as NumPy does it.
 # A float that becomes a double unseen is an error: the code would not be what it says it is.
@@ -34,7 +40,7 @@ def main_program(function: Function, source_file: str, real: str) -> str:
     line numbers are the file's own; `real`, the number type's spelling.
     """
     count, width = result_count(function), len(input_names(function))
-    body = call(function, real, lambda cell: f"({real})shadefit_row[{cell}]", depth=8)
+    body = call_statements(function, real, lambda cell: f"({real})shadefit_row[{cell}]", depth=8)
     return f"""#include "{source_file}"
 #include <stdio.h>
 int main(void) {{
@@ -72,10 +78,10 @@ def evaluate_program(
         (folder / f"main{suffix}").write_text(text, encoding="utf-8")
         execute(
             [*compiler, f"main{suffix}", "-o", "program", "-lm"],
-            failure=refusal(language, function, precision),
+            failure=compile_failure(language, function, precision),
             folder=folder,
         )
-        failure = breakdown(language, function, precision)
+        failure = run_failure(language, function, precision)
         data = execute([folder / "program"], failure=failure, folder=folder, data=inputs.tobytes())
     return values_from(data, len(inputs), function, failure)
 
@@ -106,8 +112,8 @@ def half_missing(compiler: str, suffix: str) -> str | None:
 
 
 def _native(target: str, language: str, compiler: str, standard: str, suffix: str) -> Toolchain:
-    def absence(precision: str) -> str | None:
-        reason = absent(compiler, compiler)
+    def missing_reason(precision: str) -> str | None:
+        reason = missing_command(compiler, compiler)
         if reason is None and precision == "half":
             reason = half_missing(compiler, suffix)
         return reason
@@ -124,7 +130,9 @@ def _native(target: str, language: str, compiler: str, standard: str, suffix: st
         f"{standard.upper()}, -O2, no contraction to fma; half is _Float16, emulated with every "
         "step rounded."
     )
-    return Toolchain(target, absence, evaluate, lambda: first_line(compiler, "--version"), note)
+    return Toolchain(
+        target, missing_reason, evaluate, lambda: first_line(compiler, "--version"), note
+    )
 
 
 C = _native("c", "C", "gcc", "c11", ".c")

@@ -11,19 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from programs.function import Function, input_names
-from programs.toolchains.calling import call
-from programs.toolchains.lexical import refuse, words
+from programs.functions import Function, input_names
+from programs.toolchains.calling import call_statements
+from programs.toolchains.lexical import refuse, whole_words
 from programs.toolchains.native import STRICT, evaluate_program
 from programs.toolchains.process import (
     ToolchainError,
-    absent,
+    missing_command,
     execute,
     first_line,
-    packaged,
+    packaged_file,
     workspace,
 )
-from programs.toolchains.toolchain import breakdown, refusal, result_count
+from programs.toolchains.interface import run_failure, compile_failure, result_count
 
 NOTE = (
     "with bpy, OSL's own compiler and Cycles on the processor, whose exp and pow are good to 1e-5 "
@@ -42,19 +42,19 @@ _FOREIGN = (
     *("signed", "sizeof", "static", "switch", "template", "typedef", "union", "unsigned"),
 )
 _SUFFIXED = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?[fFhHlLuU]\b")
-_RULES = ((words(_FOREIGN), "no word of OSL"), (_SUFFIXED, "OSL's literals have no suffix"))
+_RULES = ((whole_words(_FOREIGN), "no word of OSL"), (_SUFFIXED, "OSL's literals have no suffix"))
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
     if precision != "float":
         return "OSL computes in float only"
-    return None if renderer() else absent("g++", "g++")
+    return None if renderer() else missing_command("g++", "g++")
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
     """As `Toolchain.evaluate`."""
-    failure = refusal("OSL", function, precision)
+    failure = compile_failure("OSL", function, precision)
     # Newer compilers take a suffix that older ones refuse: here it is refused by all.
     refuse(source, _RULES, failure)
     if renderer():
@@ -71,7 +71,7 @@ def versions() -> str:
 @cache
 def renderer() -> str | None:
     """Name Blender and its OSL with their versions, or None where they are not or do not load."""
-    if packaged("bpy", "__init__.so") is None:
+    if packaged_file("bpy", "__init__.so") is None:
         return None
     try:
         said = execute([sys.executable, "-I", _WORKER, "--version"], failure="bpy").decode()
@@ -91,7 +91,7 @@ def probe(function: Function, first: int, folder: Path) -> str:
         'shadefit_s, shadefit_t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
         for index in range(-(-width // 3))
     )
-    body = call(function, "float", lambda cell: f"shadefit_in{cell // 3}[{cell % 3}]")
+    body = call_statements(function, "float", lambda cell: f"shadefit_in{cell // 3}[{cell % 3}]")
     shown = ", ".join(
         f"shadefit_value[{cell}]" if cell < count else "0.0" for cell in range(first, first + 3)
     )
@@ -117,7 +117,7 @@ def _rendered(source: str, function: Function, inputs: np.ndarray, failure: str)
             (folder / f"probe{first}.osl").write_text(shader, encoding="utf-8")
         (folder / "inputs").write_bytes(inputs.astype(np.float32).tobytes())
         execute([*worker, "compile", *firsts], failure=failure, folder=folder)
-        failure = breakdown("OSL", function, "float")
+        failure = run_failure("OSL", function, "float")
         size = (str(rows), str(inputs.shape[1]))
         execute(
             [*worker, "render", *size, *firsts],

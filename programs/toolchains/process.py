@@ -62,13 +62,13 @@ def execute(
     return done.stdout
 
 
-def program(name: str) -> Path | None:
+def command_path(name: str) -> Path | None:
     """Where a program is on PATH, or None."""
     found = shutil.which(name)
     return Path(found) if found else None
 
 
-def packaged(package: str, file: str) -> Path | None:
+def packaged_file(package: str, file: str) -> Path | None:
     """Where an installed Python package holds a file, or None; the package is not imported."""
     try:
         spec = find_spec(package)
@@ -97,9 +97,9 @@ def first_line(*command: str | Path) -> str:
     return next((line.strip() for line in lines if line.strip()), name)
 
 
-def absent(name: str, package: str) -> str | None:
+def missing_command(name: str, package: str) -> str | None:
     """None when a program is on PATH; else a line that says so and what to install."""
-    return None if program(name) else f"{name} is not on PATH (Debian: {package})"
+    return None if command_path(name) else f"{name} is not on PATH (Debian: {package})"
 
 
 def quiet_environment() -> dict[str, str]:

@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from programs.function import Function, group_inputs
-from programs.toolchains.precision import number_type
+from programs.functions import Function, group_inputs
+from programs.precision import number_type
 from programs.toolchains.process import ToolchainError
-from programs.toolchains.toolchain import breakdown, refusal
+from programs.toolchains.interface import run_failure, compile_failure
 
 NOTE = "NumPy rounds every operation to the type of its arrays; whole arrays at a time."
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`: NumPy is always here, in every precision."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`: NumPy is always here, in every precision."""
     return None
 
 
@@ -27,12 +27,12 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
         exec(compile(source, f"<{function.name}>", "exec"), namespace)
     except Exception as error:
         log = f"{type(error).__name__}: {error}"
-        raise ToolchainError(refusal("Python", function, precision), log) from error
+        raise ToolchainError(compile_failure("Python", function, precision), log) from error
     called = namespace.get(function.name)
     if not callable(called):
         log = f"the code defines no function {function.name}"
-        raise ToolchainError(refusal("Python", function, precision), log)
-    failure = breakdown("Python", function, precision)
+        raise ToolchainError(compile_failure("Python", function, precision), log)
+    failure = run_failure("Python", function, precision)
     try:
         # Overflow shows in the values; as warnings it would only be said twice.
         with np.errstate(all="ignore"):

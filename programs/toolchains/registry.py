@@ -14,11 +14,11 @@ from programs.toolchains import (
     slang,
     wgsl,
 )
-from programs.toolchains.toolchain import Toolchain
+from programs.toolchains.interface import Toolchain
 
 
 def _assembled(target: str, module: ModuleType) -> Toolchain:
-    return Toolchain(target, module.absence, module.evaluate, module.versions, module.NOTE)
+    return Toolchain(target, module.missing_reason, module.evaluate, module.versions, module.NOTE)
 
 
 TOOLCHAINS: dict[str, Toolchain] = {

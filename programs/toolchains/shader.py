@@ -1,8 +1,8 @@
 """A compute shader around a function, in the languages that look like C."""
 
-from programs.function import Function, input_names
-from programs.toolchains.calling import call
-from programs.toolchains.toolchain import result_count
+from programs.functions import Function, input_names
+from programs.toolchains.calling import call_statements
+from programs.toolchains.interface import result_count
 
 # Halves travel as floats, which hold them exactly, so that no 16-bit storage is needed.
 STORED = {"half": "float", "float": "float", "double": "double"}
@@ -15,7 +15,7 @@ def main_body(function: Function, real: str, stored: str, inputs: str, outputs: 
     of the one in the buffers; `inputs` and `outputs`, the expressions that name the buffers.
     """
     count, width = result_count(function), len(input_names(function))
-    return call(
+    return call_statements(
         function,
         real,
         lambda cell: f"{real}({inputs}[{width}u * shadefit_k + {cell}u])",

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from programs.function import Function
+from programs.functions import Function
 from programs.toolchains import device
-from programs.toolchains.process import execute, first_line, packaged, program, workspace
+from programs.toolchains.process import execute, first_line, command_path, packaged_file, workspace
 from programs.toolchains.shader import hlsl_shader
-from programs.toolchains.toolchain import refusal
+from programs.toolchains.interface import compile_failure
 
 NOTE = (
     "slangc -O0 to SPIR-V; the device's inverse trigonometric functions may be off by 4e-4, its "
@@ -16,13 +16,13 @@ NOTE = (
 )
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
     if _compiler() is None:
         return (
             "slangc is not on PATH nor in the environment (PyPI: slangtorch, without what it needs)"
         )
-    return device.absence(precision)
+    return device.missing_reason(precision)
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
@@ -37,7 +37,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
         flags = ("-target", "spirv", "-O0", "-entry", "main", "-stage", "compute")
         execute(
             [compiler, "code.slang", *flags, "-o", "code.spv"],
-            failure=refusal("Slang", function, precision),
+            failure=compile_failure("Slang", function, precision),
             folder=folder,
         )
         code = (folder / "code.spv").read_bytes()
@@ -52,4 +52,4 @@ def versions() -> str:
 
 
 def _compiler() -> Path | None:
-    return program("slangc") or packaged("slangtorch", "bin/slangc")
+    return command_path("slangc") or packaged_file("slangtorch", "bin/slangc")

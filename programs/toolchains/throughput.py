@@ -10,17 +10,17 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from programs.function import Function, group_inputs
-from programs.printing.printer import write
-from programs.toolchains.calling import call
+from programs.functions import Function, group_inputs
+from programs.printing.printer import write_source
+from programs.toolchains.calling import call_statements
 from programs.toolchains.process import (
     ToolchainError,
-    absent,
+    missing_command,
     execute,
     first_line,
     workspace,
 )
-from programs.toolchains.toolchain import refusal, result_count
+from programs.toolchains.interface import compile_failure, result_count
 
 # sqrtf need not set errno, and no one catches its exceptions: without these two, loops over it are
 # not vectorised, which XLA does with its own.
@@ -47,7 +47,7 @@ class Throughput:
         return self.compiled / self.jax
 
 
-def throughput(
+def measure_throughput(
     function: Function, points: int = 1 << 17, rounds: int = 9, flags: tuple[str, ...] = FLAGS
 ) -> Throughput:
     """Measure the exported C and the jitted JAX function on the same data, turn by turn.
@@ -58,7 +58,7 @@ def throughput(
     """
     if points < 1 or rounds < 1:
         raise ValueError(f"points {points} and rounds {rounds}; allowed: at least 1 each")
-    reason = absent("gcc", "gcc")
+    reason = missing_command("gcc", "gcc")
     if reason is not None:
         raise ValueError(reason)
     inputs = _random_inputs(function, points)
@@ -92,12 +92,12 @@ def _compile(
     function: Function, folder: Path, flags: tuple[str, ...]
 ) -> Callable[[np.ndarray], np.ndarray]:
     source, library = folder / "function.c", folder / "function.so"
-    source.write_text(write(function, "c") + _driver(function), encoding="utf-8")
+    source.write_text(write_source(function, "c") + _driver(function), encoding="utf-8")
     # The function is to be measured inside the loop, as a renderer would inline it.
     inlined = ("-fno-semantic-interposition", "-finline-limit=100000")
     command = ["gcc", *flags, *inlined, "-shared", "-fPIC", source, "-o", library, "-lm"]
     try:
-        execute(command, failure=refusal("C", function, "float"))
+        execute(command, failure=compile_failure("C", function, "float"))
     except ToolchainError as error:
         complaint = next((line for line in error.log.splitlines() if "error" in line), "")
         raise ValueError(f"{error.summary} {complaint}".strip()) from error
@@ -119,7 +119,7 @@ def _compile(
 
 def _driver(function: Function) -> str:
     """Write the loop over all points: one row of inputs after the other, and so the outputs."""
-    body = call(
+    body = call_statements(
         function,
         "float",
         lambda row: f"in[{row} * n + i]",

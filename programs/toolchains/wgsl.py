@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from programs.function import Function, input_names
+from programs.functions import Function, input_names
 from programs.toolchains import device
-from programs.toolchains.calling import call
-from programs.toolchains.toolchain import result_count
+from programs.toolchains.calling import call_statements
+from programs.toolchains.interface import result_count
 
 NOTE = (
     "the device's inverse trigonometric functions may be off by 4e-4, its exp, log and pow by "
@@ -15,11 +15,11 @@ NOTE = (
 _REAL = {"half": "f16", "float": "f32"}
 
 
-def absence(precision: str) -> str | None:
-    """As `Toolchain.absence`."""
+def missing_reason(precision: str) -> str | None:
+    """As `Toolchain.missing_reason`."""
     if precision == "double":
         return "WGSL has no double precision"
-    return device.absence(precision)
+    return device.missing_reason(precision)
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
@@ -32,7 +32,7 @@ def compute_shader(source: str, function: Function, precision: str) -> str:
     """Write the compute shader around a function."""
     real = _REAL[precision]
     count, width = result_count(function), len(input_names(function))
-    body = call(
+    body = call_statements(
         function,
         real,
         lambda cell: f"{real}(shadefit_in[{width}u * shadefit_k + {cell}u])",

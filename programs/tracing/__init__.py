@@ -1,1 +1,1 @@
-"""From a JAX function to a straight-line program, by way of its jaxpr."""
+"""Tracing: a JAX function is traced to a jaxpr, and the jaxpr becomes a straight-line program."""

@@ -1,4 +1,8 @@
-"""What the author of a JAX function called its intermediate values, read from its source."""
+"""The variable names that the author of a JAX function chose, read from its source code.
+
+Every equation of a jaxpr carries a traceback. It leads to the expression in the author's source
+that the equation came from, and so to the name that the expression was assigned to.
+"""
 
 import ast
 import linecache
@@ -13,20 +17,19 @@ import jax
 
 _JAX = str(Path(jax.__file__).parent)
 
-# Where an expression stands: first line, last line, first column, last column.
+# The position of an expression: first line, last line, first column, last column.
 Position = tuple[int | None, int | None, int | None, int | None]
-
-
-# An expression in a source file.
+# An expression in a source file: the file and the position.
 Place = tuple[str, Position]
 
 
 def places(source_info: Any, within: Callable[[CodeType], bool]) -> tuple[Place, ...]:
     """Find the expressions in the author's source that an equation of a jaxpr comes from.
 
-    Arguments: `source_info` of the equation; `within`, which tells the code of the outermost call
-    that is looked at: beyond it stand whoever called the function. Returns the expressions that
-    were being evaluated outside of JAX, the innermost first; without an outermost call, that one.
+    Arguments: `source_info` of the equation; `within`, which returns whether a code object is that
+    of the traced function. Frames outside the traced function belong to its callers and are
+    ignored. Returns the expressions that were being evaluated, innermost first, without those in
+    JAX's own code. If the traced function is not in the traceback, only the innermost is returned.
     """
     if source_info.traceback is None:
         return ()
@@ -34,7 +37,7 @@ def places(source_info: Any, within: Callable[[CodeType], bool]) -> tuple[Place,
     found: list[Place] = []
     for code, instruction in zip(codes, instructions, strict=True):
         if not is_jax(code.co_filename):
-            # An instruction takes two bytes; co_positions gives one entry an instruction.
+            # An instruction takes two bytes; co_positions has one entry for each instruction.
             positions = next(islice(code.co_positions(), instruction // 2, None))
             found.append((code.co_filename, positions))
         if within(code):
@@ -43,19 +46,19 @@ def places(source_info: Any, within: Callable[[CodeType], bool]) -> tuple[Place,
 
 
 def assigned_name(where: Place) -> str | None:
-    """Give `name` when the expression at `where` is the right-hand side of `name = …`."""
+    """Return `name` if the expression at `where` is the right-hand side of `name = …`, or None."""
     file, position = where
     return _assignments(file).get(position)
 
 
 def is_jax(file: str) -> bool:
-    """Tell whether a source file is JAX's own: its names mean nothing to a shader's reader."""
+    """Return whether a source file belongs to JAX; its variable names would not help a reader."""
     return file.startswith(_JAX)
 
 
 @lru_cache(maxsize=64)
 def _assignments(file: str) -> dict[Position, str]:
-    # Without its source (or with a stale one) a function loses its names, not its meaning.
+    # If the source is missing or has changed, only names are lost: the program stays the same.
     try:
         tree = ast.parse("".join(linecache.getlines(file)))
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""Growing a straight-line program: constants folded, equal steps shared, idle ones dropped."""
+"""Building a straight-line program step by step: constants are folded and equal steps shared."""
 
 import math
 from collections.abc import Sequence
@@ -8,51 +8,52 @@ from typing import Any
 import numpy as np
 
 from programs.operations import OPERATIONS
-from programs.program import Operand, Program, Step, is_value, part
+from programs.program import Operand, Program, Step, is_value, subprogram
 
 
 class Builder:
-    """A program that grows step by step; equal steps are made once and constants are folded.
+    """A program to which steps are added one by one.
 
-    Only rewritings that leave every finite result bit for bit (up to the sign of a zero) are made:
-    x·1, x·0, x/1, x±0, x/2, −(−x), x+(−y), abs(−x), a choice that is a minimum, and the like.
-    Sums and products are never re-associated.
+    Operations on constants are folded, equal steps are shared, and expressions such as x·1, x·0,
+    x/1, x±0, x/2, −(−x), x+(−y), abs(−x) and a selection that is a minimum are simplified. Every
+    simplification leaves each finite result unchanged to the last bit, except for the sign of a
+    zero. Sums and products are therefore never re-associated.
     """
 
     def __init__(self, inputs: Sequence[str], limit: int):
-        """Begin a program of the named `inputs` with at most `limit` steps."""
+        """Start an empty program with these names of inputs and at most `limit` steps."""
         self.inputs = tuple(inputs)
         self.limit = limit
         self.steps: list[Step] = []
         self._known: dict[tuple[Any, ...], int] = {}
 
     def apply(self, operation: str, *operands: Operand) -> Operand:
-        """Add one operation and give its value: a number of a value, or a constant.
+        """Add one operation and return its result, as an operand for further operations.
 
         Arguments: `operation`, a key of OPERATIONS; `operands`, numbers of values (int) or
-        constants (float, and bool for conditions). Returns an operand. Raises ValueError when the
-        program has grown beyond its limit.
+        constants (float, or bool for conditions). Raises ValueError when the program would have
+        more steps than its limit.
         """
         if not any(is_value(operand) for operand in operands):
             with np.errstate(all="ignore"):
-                # One-element arrays: np.where and the ufuncs then agree on what they give back.
+                # With one-element arrays, np.where and the ufuncs return the same type.
                 folded = OPERATIONS[operation].numpy(*(np.asarray([x]) for x in operands))
             return folded.item()
         simpler = self._simplify(operation, operands)
         return self._append(operation, operands) if simpler is None else simpler
 
     def name(self, operand: Operand, hint: str) -> None:
-        """Remember what the author called a value, unless it is an input or has a name."""
+        """Record the author's name of a value, unless it is an input or already has a name."""
         index = operand - len(self.inputs) if is_value(operand) else -1
         if index >= 0 and self.steps[index].hint is None:
             self.steps[index] = replace(self.steps[index], hint=hint)
 
     def finish(self, name: str, outputs: Sequence[Operand]) -> Program:
-        """Close the program: keep the steps that the outputs need, renumbered."""
-        return part(Program(name, self.inputs, tuple(self.steps), ()), outputs)
+        """Return the program of the steps that the outputs need, renumbered."""
+        return subprogram(Program(name, self.inputs, tuple(self.steps), ()), outputs)
 
     def _append(self, operation: str, operands: tuple[Operand, ...]) -> int:
-        # The constant 1.0 is not the value number 1, and 0.0 is not -0.0.
+        # The type and repr tell the constant 1.0 from the value number 1, and 0.0 from -0.0.
         tagged = [(type(operand).__name__, repr(operand)) for operand in operands]
         if OPERATIONS[operation].commutative:
             tagged.sort()
@@ -101,12 +102,12 @@ class Builder:
         return self._simplify_bound(condition, yes, no)
 
     def _simplify_bound(self, condition: int, yes: Operand, no: Operand) -> Operand | None:
-        """Recognise the larger and the smaller of two: where(a < b, b, a) is max(a, b)."""
+        """Recognise minima and maxima: where(a < b, b, a) is max(a, b)."""
         index = condition - len(self.inputs)
-        if index < 0 or self.steps[index].operation not in _ORDERS:
+        if index < 0 or self.steps[index].operation not in _MINIMA_AND_MAXIMA:
             return None
         left, right = self.steps[index].operands
-        smaller, larger = _ORDERS[self.steps[index].operation]
+        smaller, larger = _MINIMA_AND_MAXIMA[self.steps[index].operation]
         if _same(yes, left) and _same(no, right):
             return self.apply(smaller, left, right)
         if _same(yes, right) and _same(no, left):
@@ -133,21 +134,21 @@ class Builder:
         return result
 
     def _operand_of(self, operation: str, operand: Operand) -> Operand | None:
-        """Give x when `operand` is operation(x), else None."""
+        """Return x if `operand` is operation(x), else None."""
         index = operand - len(self.inputs) if is_value(operand) else -1
         if index < 0 or self.steps[index].operation != operation:
             return None
         return self.steps[index].operands[0]
 
 
-# comparison of a and b -> what where(it, a, b) is, and what where(it, b, a) is
-_ORDERS = {
+# comparison of a and b -> the meaning of where(comparison, a, b) and of where(comparison, b, a)
+_MINIMA_AND_MAXIMA = {
     "lt": ("min", "max"),
     "le": ("min", "max"),
     "gt": ("max", "min"),
     "ge": ("max", "min"),
 }
-# (operation, constant operand): the result is the other operand, …
+# (operation, constant operand) for which the result is the other operand
 _NEUTRAL = {
     ("add", 0.0),
     ("sub", 0.0),
@@ -157,12 +158,13 @@ _NEUTRAL = {
     ("and", True),
     ("or", False),
 }
-# … or the constant itself.
+# (operation, constant operand) for which the result is the constant
 _ABSORBING = {("mul", 0.0), ("and", False), ("or", True)}
 
 
 def _is_power_of_two(constant: float) -> bool:
-    # Dividing by it and multiplying by its reciprocal give the same bits (in half precision too).
+    # Dividing by such a constant and multiplying by its reciprocal give the same bits. The range is
+    # that of half precision, in which the reciprocal must be exact too.
     return abs(math.frexp(constant)[0]) == 0.5 and 2.0**-10 <= abs(constant) <= 2.0**10
 
 

@@ -1,4 +1,4 @@
-"""What each primitive of a jaxpr becomes, on small arrays, in a straight-line program."""
+"""Translating the primitives of a jaxpr, on small arrays, into steps of a straight-line program."""
 
 from collections.abc import Callable
 from functools import partial, reduce
@@ -11,7 +11,7 @@ from programs.operations import OPERATIONS
 from programs.program import Operand
 from programs.tracing.builder import Builder
 
-# Primitives that call a jaxpr, with the parameter that holds it.
+# Primitives that call another jaxpr -> the parameter that holds that jaxpr
 CALLS = {
     "jit": "jaxpr",
     "pjit": "jaxpr",
@@ -36,7 +36,7 @@ def _power(builder: Builder, x: Operand, y: int) -> Operand:
         return 1.0
     if y == 1:
         return x
-    # x³ = x²·x and x⁴ = x²·x²: the lower powers are shared with every other power of x.
+    # x³ = x²·x and x⁴ = x²·x²: other powers of x share the lower powers.
     half = _power(builder, x, y // 2) if y % 2 == 0 else _power(builder, x, y - 1)
     return builder.apply("mul", half, half if y % 2 == 0 else x)
 
@@ -66,7 +66,7 @@ def _direct(name: str) -> Callable[..., Operand]:
 
 
 ELEMENTWISE: dict[str, Callable[..., Operand]] = {
-    # The operations of a program go by the names of JAX's primitives.
+    # Most operations of a program have the same name as the primitive of JAX.
     **{name: _direct(name) for name in OPERATIONS if name != "select"},
     "clamp": _clamp,
     "copy": lambda builder, x: x,
@@ -86,8 +86,8 @@ _REDUCTIONS = {
     "reduce_or": "or",
 }
 
-# Primitives that only move elements, with the positions of the operands that are moved (none: all
-# of them); the other operands say where to, and must be constants.
+# Primitives that only move elements -> positions of the operands that hold the elements; () means
+# all operands. The other operands are indices, which must be constants.
 _MOVES: dict[str, tuple[int, ...]] = {
     "broadcast_in_dim": (),
     "concatenate": (),
@@ -107,19 +107,19 @@ _MOVES: dict[str, tuple[int, ...]] = {
 }
 
 
-def allowed() -> str:
-    """List the primitives that can be written, for a message of refusal."""
+def writable_primitives() -> str:
+    """List the primitives that can be translated, for error messages."""
     names = {*ELEMENTWISE, *_REDUCTIONS, *_MOVES, *CALLS}
     names |= {"convert_element_type", "dot_general", "integer_pow", "scan"}
     return ", ".join(sorted(names))
 
 
 def apply_primitive(builder: Builder, equation: JaxprEqn, operands: list[Any]) -> list[Any]:
-    """Apply one primitive to small arrays.
+    """Translate one primitive, element by element.
 
-    Arguments: `operands`, arrays: of operands of the program (object) or of constants (numeric).
-    Returns the results, one array an output. Raises KeyError for a primitive that has no meaning
-    here, and ValueError for one that is used in a way that has none.
+    Arguments: `operands`, arrays; those of dtype object hold operands of the program, numeric ones
+    hold constants. Returns one array for each output. Raises KeyError for a primitive that cannot
+    be translated, and ValueError for a use of a primitive that cannot.
     """
     primitive, params = equation.primitive.name, equation.params
     _require_reals(equation)
@@ -129,7 +129,7 @@ def apply_primitive(builder: Builder, equation: JaxprEqn, operands: list[Any]) -
     if primitive == "convert_element_type":
         rule = _convert(equation)
     elif primitive == "integer_pow":
-        rule = lambda builder, x: _power(builder, x, params["y"])  # noqa: E731 - a table of one
+        rule = lambda builder, x: _power(builder, x, params["y"])  # noqa: E731 - one line
     elif primitive in _REDUCTIONS:
         return [_fold(builder, _REDUCTIONS[primitive], operands[0], params["axes"])]
     elif primitive == "dot_general":
@@ -176,7 +176,7 @@ def _contract(builder: Builder, dimension_numbers: Any, left: Any, right: Any) -
 
 def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
     positions = _MOVES[equation.primitive.name] or range(len(operands))
-    # Let the primitive itself move the elements' numbers: where they arrive, the elements go.
+    # Number the elements and let the primitive move the numbers: they show where each element goes.
     pool: list[Operand] = []
     arguments = list(operands)
     for position in positions:
@@ -198,12 +198,12 @@ def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
 
 
 def _convert(equation: JaxprEqn) -> Callable[..., Operand]:
-    source, target = _dtype(equation.invars[0]), np.dtype(equation.params["new_dtype"])
-    if source.kind == "f" and target.kind in "iu":
+    old, new = _dtype(equation.invars[0]), np.dtype(equation.params["new_dtype"])
+    if old.kind == "f" and new.kind in "iu":
         raise ValueError("a rounding to whole numbers; allowed: floor and ceil")
-    if source.kind == "b" and target.kind != "b":
+    if old.kind == "b" and new.kind != "b":
         return lambda builder, x: builder.apply("select", x, 1.0, 0.0)
-    if source.kind != "b" and target.kind == "b":
+    if old.kind != "b" and new.kind == "b":
         return lambda builder, x: builder.apply("ne", x, 0.0)
     return lambda builder, x: x
 
@@ -218,7 +218,7 @@ def _as_operands(array: Any) -> Any:
 
 
 def _require_reals(equation: JaxprEqn) -> None:
-    # Whole numbers may be chosen between and converted, no more: shader code here has none.
+    # Exported code has no integers, so integers may only be moved, selected and converted.
     whole = equation.primitive.name in ("select_n", "convert_element_type", *_MOVES)
     for variable in equation.outvars:
         dtype = _dtype(variable)

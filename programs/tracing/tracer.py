@@ -1,4 +1,4 @@
-"""From a JAX function to a straight-line program, by way of its jaxpr."""
+"""Tracing a JAX function: its jaxpr is inlined, unrolled and written as a straight-line program."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -10,27 +10,27 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr, JaxprEqn, Literal
 
-from programs.function import Function, group_inputs, input_names
+from programs.functions import Function, group_inputs, input_names
 from programs.program import Program
 from programs.tracing.authorship import Place, assigned_name, is_jax, places
 from programs.tracing.builder import Builder
-from programs.tracing.primitives import CALLS, allowed, apply_primitive
+from programs.tracing.primitives import CALLS, apply_primitive, writable_primitives
 
-# More than any target takes: it stops a loop that would grow without end.
+# More steps than any language allows. The limit stops the unrolling of very long loops.
 LIMIT = 50_000
 
 
 def trace(function: Function, limit: int = LIMIT) -> Program:
-    """Write a function as a straight-line program.
+    """Trace a function into a straight-line program.
 
-    Calls (jit, custom derivatives, checkpoints) are inlined and scans of fixed length unrolled;
-    small arrays are taken apart into scalars; constants are folded in float64 and equal
-    subexpressions shared.
+    Calls (jit, custom derivatives, checkpoints) are inlined, scans of fixed length are unrolled,
+    and small arrays are split into scalars. Constants are folded in float64, and equal
+    subexpressions are shared.
 
-    Arguments: `function`, whose `call` is a JAX function of scalars; `limit`, the longest program
-    that is worth the while. Returns the program; its inputs are named as `input_names` says. Raises
-    ValueError when float64 is off, when the results are not what `function.result` says, when an
-    operation cannot be written as shader code, or when there are more than `limit` of them.
+    Arguments: `function`, whose `call` is a JAX function of scalars; `limit`, the largest number of
+    steps. Returns the program, whose inputs have the names of `input_names(function)`. Raises
+    ValueError when float64 is off, when the results do not agree with `function.result`, when an
+    operation cannot be written as shader code, and when there are more than `limit` steps.
     """
     if jnp.result_type(float) != np.float64:
         raise ValueError("jax_enable_x64 is False; allowed: True, set before a function is traced")
@@ -58,9 +58,9 @@ def _inline(
     inputs: Sequence[Any],
     within: Callable[[CodeType], bool] | None,
 ) -> list[Any]:
-    """Run a jaxpr on arrays: numeric ones are constants, object ones hold operands.
+    """Run a jaxpr on arrays: numeric arrays are constants, arrays of dtype object hold operands.
 
-    `within` tells the code that the jaxpr was made of, or is None where its names mean nothing.
+    `within` is as in `authorship.places`, or None where variable names are of no use.
     """
     jaxpr: Jaxpr = closed.jaxpr
     values: dict[Any, Any] = dict(zip(jaxpr.constvars, map(np.asarray, closed.consts), strict=True))
@@ -82,7 +82,7 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
     if primitive in CALLS:
         inner = equation.params[CALLS[primitive]]
         closed = inner if isinstance(inner, ClosedJaxpr) else ClosedJaxpr(inner, ())
-        # Custom derivative rules carry their own jaxpr: the function itself has a source file.
+        # Also for a function with a custom derivative, debug_info names the function's own source.
         return _inline(name, builder, closed, operands, _authored(closed))
     if primitive == "scan":
         return _unroll(name, builder, equation, operands)
@@ -94,7 +94,7 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
         return apply_primitive(builder, equation, operands)
     except KeyError:
         raise ValueError(
-            f"{primitive!r} in {name} cannot be written as shader code; allowed: {allowed()}"
+            f"{primitive!r} in {name} cannot be written as shader code; allowed: {writable_primitives()}"
         ) from None
     except ValueError as error:
         raise ValueError(f"{primitive!r} in {name}: {error}") from error
@@ -117,7 +117,7 @@ def _unroll(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]
 
 
 def _authored(closed: ClosedJaxpr) -> Callable[[CodeType], bool] | None:
-    # The equations of JAX's own jitted functions remember whoever called them first.
+    # JAX caches its own jitted functions, so their tracebacks lead to whoever called them first.
     info = closed.jaxpr.debug_info
     file, line = getattr(info, "func_filename", None), getattr(info, "func_lineno", None)
     if file is None or is_jax(file):
@@ -135,8 +135,9 @@ def _hints(
 
 
 def _hint(here: tuple[Place, ...], following: tuple[Place, ...]) -> str | None:
-    # Several equations in a row may come from one expression (x = f(…) is all that f does): the
-    # last one has its value. The innermost name is the nearest to what the equation computes.
+    # Several equations in a row may come from one expression, such as x = f(…). Only the last one
+    # computes its value, so only that one gets the name. Of nested expressions, the innermost name
+    # describes the equation best.
     for level in range(len(here)):
         outwards = len(here) - level
         if here[level:] == following[len(following) - outwards :]:

@@ -5,10 +5,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from programs.cost import WEIGHTS, Cost, count
-from programs.function import Function, Parameter
+from programs.cost import WEIGHTS, Cost, count_operations
+from programs.functions import Function, Parameter
 from programs.toolchains import throughput as timing
-from programs.toolchains.throughput import throughput
+from programs.toolchains.throughput import measure_throughput
 from programs.tracing.tracer import trace
 
 # Two compilers of the same float32 expression: contraction into fma, another exp.
@@ -56,7 +56,7 @@ COUNTS = {
 @pytest.mark.parametrize("name", COUNTS)
 def test_operations_are_counted_by_kind(name):
     call, expected = COUNTS[name]
-    assert count(of_x(call)) == expected
+    assert count_operations(of_x(call)) == expected
 
 
 def test_totals_weigh_each_kind():
@@ -68,25 +68,25 @@ def test_totals_weigh_each_kind():
 
 def test_what_does_not_vary_is_not_counted_twice():
     program = trace(SCALAR)
-    assert count(program) == Cost(add=3, mul=3, div=1, sqrt=1, fma=3)
-    assert count(program, ["alpha"]) == Cost(add=2, mul=2, div=1, fma=2)
-    assert count(program, ["alpha", "d"]) == count(program)
-    assert count(program, []) == Cost()
+    assert count_operations(program) == Cost(add=3, mul=3, div=1, sqrt=1, fma=3)
+    assert count_operations(program, ["alpha"]) == Cost(add=2, mul=2, div=1, fma=2)
+    assert count_operations(program, ["alpha", "d"]) == count_operations(program)
+    assert count_operations(program, []) == Cost()
     arrays = trace(ARRAYS)
-    assert count(arrays, ["x"]) == Cost(add=1, mul=2, fma=1)
-    assert count(arrays, ["c[1]"]).transcendental == count(arrays, ["c"]).transcendental == 1
-    assert count(arrays, ["c[0]"]) == Cost(add=1, fma=1)
+    assert count_operations(arrays, ["x"]) == Cost(add=1, mul=2, fma=1)
+    assert count_operations(arrays, ["c[1]"]).transcendental == count_operations(arrays, ["c"]).transcendental == 1
+    assert count_operations(arrays, ["c[0]"]) == Cost(add=1, fma=1)
 
 
 def test_an_unknown_input_is_refused():
     with pytest.raises(ValueError, match="'beta' is no input of Rational; allowed: alpha, d"):
-        count(trace(SCALAR), ["beta"])
+        count_operations(trace(SCALAR), ["beta"])
 
 
 @needs_gcc
 @pytest.mark.parametrize("function", [SCALAR, ARRAYS], ids=lambda function: function.name)
 def test_both_sides_of_the_measurement_compute_the_same(function):
-    measured = throughput(function, points=2000, rounds=2)
+    measured = measure_throughput(function, points=2000, rounds=2)
     assert measured.difference <= DIFFERENCE
     assert measured.compiled > 0 and measured.jax > 0
     assert measured.ratio == measured.compiled / measured.jax
@@ -96,24 +96,24 @@ def test_both_sides_of_the_measurement_compute_the_same(function):
 
 @needs_gcc
 def test_a_wrong_compilation_shows(monkeypatch):
-    right = timing.write
-    monkeypatch.setattr(timing, "write", lambda *given: right(*given).replace("0.5f", "0.75f"))
-    assert throughput(SCALAR, points=500, rounds=1).difference > 0.1
+    right = timing.write_source
+    monkeypatch.setattr(timing, "write_source", lambda *given: right(*given).replace("0.5f", "0.75f"))
+    assert measure_throughput(SCALAR, points=500, rounds=1).difference > 0.1
 
 
 @needs_gcc
 def test_code_that_does_not_compile_is_an_error(monkeypatch):
     monkeypatch.setattr(
-        timing, "write", lambda *given: "float Rational(float a, float d) { nonsense }"
+        timing, "write_source", lambda *given: "float Rational(float a, float d) { nonsense }"
     )
     with pytest.raises(ValueError, match=r"(?s)Rational .*not compile.*error: .nonsense. undecl"):
-        throughput(SCALAR, points=500, rounds=1)
+        measure_throughput(SCALAR, points=500, rounds=1)
 
 
 def test_without_a_compiler_there_is_no_figure(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     with pytest.raises(ValueError, match="gcc is not on PATH"):
-        throughput(SCALAR, points=500, rounds=1)
+        measure_throughput(SCALAR, points=500, rounds=1)
 
 
 @pytest.mark.parametrize(
@@ -129,14 +129,14 @@ def test_a_compiler_that_fails_is_an_error_in_one_line(monkeypatch, tmp_path, sc
     compiler.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     with pytest.raises(ValueError, match=complaint) as caught:
-        throughput(SCALAR, points=500, rounds=1)
+        measure_throughput(SCALAR, points=500, rounds=1)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("bad", [{"points": 0}, {"rounds": 0}])
 def test_nothing_cannot_be_measured(bad):
     with pytest.raises(ValueError, match="allowed: at least 1 each"):
-        throughput(SCALAR, **bad)
+        measure_throughput(SCALAR, **bad)
 
 
 def test_points_lie_in_the_domain():

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from programs.function import Function, Parameter, group_inputs
-from programs.languages import PRECISIONS, TARGETS
-from programs.printing.printer import write
+from programs.functions import Function, Parameter, group_inputs
+from programs.languages import PRECISIONS, LANGUAGES
+from programs.printing.printer import write_source
 from programs.program import evaluate
 from programs.tracing.tracer import trace
 
@@ -148,7 +148,7 @@ def run_python(source, function, rows):
 def test_printed_python_is_the_program_to_the_last_bit(one, other, precision, constants):
     function = function_of(one, other)
     rows = points(16).astype(PRECISIONS[precision])
-    source = write(function, "python", precision, constants=constants)
+    source = write_source(function, "python", precision, constants=constants)
     expected = evaluate(trace(function), rows, PRECISIONS[precision])
     given_back = run_python(source, function, rows)
     for result, column in zip(given_back, expected.T, strict=True):
@@ -197,7 +197,7 @@ void run(long n, const {real} *in, {real} *out)
 def test_printed_c_computes_what_the_program_does(one, other, precision, constants):
     function = function_of(one, other)
     rows = points(16).astype(PRECISIONS[precision])
-    source = write(function, "c", precision, constants=constants)
+    source = write_source(function, "c", precision, constants=constants)
     np.testing.assert_allclose(
         run_c(source, function, rows, precision),
         evaluate(trace(function), rows, PRECISIONS[precision]),
@@ -207,13 +207,13 @@ def test_printed_c_computes_what_the_program_does(one, other, precision, constan
 
 
 @settings(max_examples=40, deadline=None)
-@given(TREES, st.sampled_from(sorted(TARGETS)), st.sampled_from(["inline", "table"]))
+@given(TREES, st.sampled_from(sorted(LANGUAGES)), st.sampled_from(["inline", "table"]))
 def test_every_language_keeps_to_the_line(tree, language, constants):
-    precision = next(iter(reversed(TARGETS[language].types)))
-    if "double" in TARGETS[language].types and language in ("glsl", "hlsl", "slang"):
+    precision = next(iter(reversed(LANGUAGES[language].types)))
+    if "double" in LANGUAGES[language].types and language in ("glsl", "hlsl", "slang"):
         precision = "float"
-    source = write(function_of(tree), language, precision, constants=constants)
-    assert source == write(function_of(tree), language, precision, constants=constants)
+    source = write_source(function_of(tree), language, precision, constants=constants)
+    assert source == write_source(function_of(tree), language, precision, constants=constants)
     assert source.isascii() and source.endswith("\n") and "\t" not in source
     assert max(map(len, source.splitlines())) <= 100
     assert all(line == line.rstrip() for line in source.splitlines())

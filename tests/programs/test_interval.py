@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from programs.bounding import interval
-from programs.function import Function, Parameter
+from programs.functions import Function, Parameter
 from programs.program import Program
 from programs.tracing.tracer import trace
 

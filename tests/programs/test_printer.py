@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from programs.function import Function, Parameter
-from programs.languages import PRECISIONS, TARGETS, shortest, target
-from programs.printing.printer import write
+from programs.functions import Function, Parameter
+from programs.languages import LANGUAGES, PRECISIONS, language, shortest_decimal
+from programs.printing.printer import write_source
 
-ALL = [(key, precision) for key in TARGETS for precision in TARGETS[key].types]
+ALL = [(key, precision) for key in LANGUAGES for precision in LANGUAGES[key].types]
 RNG = np.random.default_rng(11)
 NUMERATOR, DENOMINATOR = RNG.normal(size=(2, 12))
 UNIT = (0.0, 1.0)
@@ -26,7 +26,7 @@ def of_scalars(call, names="x", result=None, name="Example"):
 
 def one_line(call, names="x", language="c", precision="double"):
     """Give the expression that a function of one statement returns."""
-    source = write(of_scalars(call, names), language, precision)
+    source = write_source(of_scalars(call, names), language, precision)
     return re.search(r"return (.*);", source)[1]
 
 
@@ -94,7 +94,7 @@ def test_printed_code_reads_as_it_was_written():
         "Quantity": "P_s, the fraction of light scattered towards the base layer",
         "Equation": "1 − P_s = λ² sqrt(λ + c)",
     }
-    assert write(of_scalars(call, "alpha thetaF"), "c", header=header) == GOLDEN
+    assert write_source(of_scalars(call, "alpha thetaF"), "c", header=header) == GOLDEN
 
 
 EXPRESSIONS = {
@@ -178,10 +178,10 @@ SIGNATURES = {
 }
 
 
-@pytest.mark.parametrize("key", TARGETS)
+@pytest.mark.parametrize("key", LANGUAGES)
 def test_signatures_are_those_of_the_listings(key):
-    precision = "float" if "float" in TARGETS[key].types else "double"
-    lines = write([COEFFICIENTS, QUADRATIC], key, precision).splitlines()
+    precision = "float" if "float" in LANGUAGES[key].types else "double"
+    lines = write_source([COEFFICIENTS, QUADRATIC], key, precision).splitlines()
     for signature in SIGNATURES[key]:
         assert lines.count(signature) == 1
 
@@ -191,7 +191,7 @@ def test_signatures_are_those_of_the_listings(key):
 def test_every_language_writes_a_form_readably(key, precision, constants):
     function = QUADRATIC if precision == "double" and key in NO_FUNCTIONS else TWO
     header = {"Made": "word " * 60}
-    source = write(function, key, precision, constants=constants, header=header)
+    source = write_source(function, key, precision, constants=constants, header=header)
     lines = source.splitlines()
     assert max(map(len, lines)) <= 100
     assert not any(line != line.rstrip() for line in lines)
@@ -220,7 +220,7 @@ DEEP = {
 @pytest.mark.parametrize("key", ["c", "wgsl", "python"])
 @pytest.mark.parametrize("name", DEEP)
 def test_deep_expressions_stay_on_the_page(key, name):
-    source = write(of_scalars(DEEP[name]), key)
+    source = write_source(of_scalars(DEEP[name]), key)
     assert max(map(len, source.splitlines())) <= 100
     if name == "Horner":
         # Lines are filled: 60 short terms do not take a line each.
@@ -228,7 +228,7 @@ def test_deep_expressions_stay_on_the_page(key, name):
 
 
 def test_a_table_holds_each_fitted_constant_once():
-    source = write(COEFFICIENTS, "c", "double", constants="table")
+    source = write_source(COEFFICIENTS, "c", "double", constants="table")
     (table,) = re.findall(r"coefficients\[(\d+)\] = \{(.*?)\};", source, re.DOTALL)
     numbers = [float(text) for text in table[1].split(",")]
     assert len(numbers) == int(table[0]) == len(set(numbers))
@@ -246,9 +246,9 @@ def test_literals_read_back_as_the_same_number(precision, value):
         rounded = dtype(value)
     if not np.isfinite(rounded):
         with pytest.raises(ValueError, match=f"is no {precision}; allowed: at most"):
-            shortest(value, precision)
+            shortest_decimal(value, precision)
         return
-    text = shortest(value, precision)
+    text = shortest_decimal(value, precision)
     assert re.fullmatch(r"-?\d+\.\d+(e[-+]?\d+)?", text)
     # A reader may round the decimal once, or to a double first.
     assert dtype(float(text)) == rounded
@@ -262,7 +262,7 @@ _strtof.argtypes, _strtof.restype = [ctypes.c_char_p, ctypes.c_void_p], ctypes.c
 
 @given(st.floats(2**-10, 1024.0, width=32))
 def test_no_shorter_literal_reads_back(value):
-    digits = len(re.sub(r"\D", "", shortest(value, "float")).strip("0"))
+    digits = len(re.sub(r"\D", "", shortest_decimal(value, "float")).strip("0"))
     if digits > 1:
         assert np.float32(f"{value:.{digits - 2}e}") != np.float32(value)
 
@@ -292,7 +292,7 @@ def test_literals_say_their_precision(key, precision, literal):
 
 
 def one_literal(key, precision):
-    source = write(of_scalars(lambda x: x * 0.1), key, precision)
+    source = write_source(of_scalars(lambda x: x * 0.1), key, precision)
     return re.search(r"x \* (.*?);?$", source, re.MULTILINE)[1]
 
 
@@ -315,14 +315,14 @@ REFUSED_NAMES = {
     ("key", "name"), [(k, n) for k, names in REFUSED_NAMES.items() for n in names]
 )
 def test_a_name_that_means_something_else_is_refused(key, name):
-    precision = next(iter(TARGETS[key].types))
-    spelled = re.escape(f"name {name!r} cannot be used in {TARGETS[key].name}; allowed: ")
+    precision = next(iter(LANGUAGES[key].types))
+    spelled = re.escape(f"name {name!r} cannot be used in {LANGUAGES[key].name}; allowed: ")
     with pytest.raises(ValueError, match=spelled):
-        write(of_scalars(jnp.sqrt, name=name), key, precision)
+        write_source(of_scalars(jnp.sqrt, name=name), key, precision)
     with pytest.raises(ValueError, match=spelled):
-        write(of_scalars(lambda x: x + 1.0, name), key, precision)
+        write_source(of_scalars(lambda x: x + 1.0, name), key, precision)
     with pytest.raises(ValueError, match=spelled):
-        write(replace(COEFFICIENTS, result_name=name), key, precision)
+        write_source(replace(COEFFICIENTS, result_name=name), key, precision)
 
 
 def test_what_the_author_calls_a_value_never_breaks_the_code():
@@ -334,7 +334,7 @@ def test_what_the_author_calls_a_value_never_breaks_the_code():
         Example = __hidden__ * __hidden__ + results
         return Example * Example + double
 
-    source = write(of_scalars(call), "c")
+    source = write_source(of_scalars(call), "c")
     names = re.findall(r"const float (\w+) =", source)
     assert names == ["double_2", "lambda", "results", "hidden", "Example_2"]
 
@@ -349,7 +349,7 @@ def test_values_are_named_after_what_they_are():
             + twice(jnp.sqrt(b)) + twice(b + b) + twice(b - alpha)
         )  # fmt: skip
 
-    source = write(of_scalars(call, "alpha b"), "c")
+    source = write_source(of_scalars(call, "alpha b"), "c")
     found = dict(re.findall(r"const float (\w+) = (.*);", source))
     assert found == {
         "oneMinusAlpha": "1.0f - alpha",
@@ -367,7 +367,7 @@ def test_a_clamped_argument_keeps_its_name():
         alpha = jnp.clip(alpha, 0.15, 1.0)
         return alpha * alpha
 
-    lines = write(of_scalars(call, "alpha"), "c").splitlines()
+    lines = write_source(of_scalars(call, "alpha"), "c").splitlines()
     assert [line.strip() for line in lines[6:-1]] == [
         "const float alphaAtLeast = 0.15f > alpha ? 0.15f : alpha;",
         "const float alphaClamped = 1.0f < alphaAtLeast ? 1.0f : alphaAtLeast;",
@@ -386,12 +386,12 @@ def test_a_clamped_argument_keeps_its_name():
 )
 def test_unknown_languages_and_precisions_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
-        write(QUADRATIC, *arguments)
+        write_source(QUADRATIC, *arguments)
 
 
 def test_unknown_constants_are_refused():
     with pytest.raises(ValueError, match="constants 'global' is unknown; allowed: inline, table"):
-        write(QUADRATIC, "c", constants="global")
+        write_source(QUADRATIC, "c", constants="global")
 
 
 @pytest.mark.parametrize(
@@ -406,46 +406,46 @@ def test_unknown_constants_are_refused():
 )
 def test_what_a_language_lacks_is_refused_by_name(call, key, precision, message):
     with pytest.raises(ValueError, match=message + r".*allowed: .*\badd\b.*\bmax\b"):
-        write(of_scalars(call), key, precision)
+        write_source(of_scalars(call), key, precision)
 
 
 def test_a_constant_out_of_range_is_refused():
     function = of_scalars(lambda x: x * 1e5)
-    assert "100000.0f" in write(function, "c")
+    assert "100000.0f" in write_source(function, "c")
     with pytest.raises(ValueError, match=r"Example: constant 100000.0 is no half; .*65504"):
-        write(function, "c", "half")
+        write_source(function, "c", "half")
     with pytest.raises(ValueError, match="constant inf is no double"):
-        write(of_scalars(lambda x: jnp.minimum(x, jnp.inf)), "c", "double")
+        write_source(of_scalars(lambda x: jnp.minimum(x, jnp.inf)), "c", "double")
 
 
 def test_a_program_too_long_for_its_language_is_refused():
-    small = replace(target("c"), limit=12)
+    small = replace(language("c"), max_operations=12)
     with pytest.raises(ValueError, match="FuzzPs takes 13 operations; allowed in C: at most 12"):
-        write(QUADRATIC, small)
-    assert "FuzzPs" in write(QUADRATIC, replace(small, limit=13))
+        write_source(QUADRATIC, small)
+    assert "FuzzPs" in write_source(QUADRATIC, replace(small, max_operations=13))
 
 
 def test_functions_share_a_file_but_not_a_name():
-    source = write([COEFFICIENTS, QUADRATIC], "c", header={"Made": "by hand"})
+    source = write_source([COEFFICIENTS, QUADRATIC], "c", header={"Made": "by hand"})
     assert source.startswith("// Made: by hand\n\n#include <math.h>\n\n// Parameters of the fit.\n")
     assert source.count("#include") == 1
     assert source.index("CalcFuzzPsCoeffs") < source.index("FuzzPs(")
     with pytest.raises(ValueError, match="function name 'FuzzPs' occurs twice"):
-        write([QUADRATIC, QUADRATIC], "c")
+        write_source([QUADRATIC, QUADRATIC], "c")
     with pytest.raises(ValueError, match="'FuzzPs' is a function and a parameter"):
-        write([QUADRATIC, of_scalars(jnp.sin, "FuzzPs")], "c")
+        write_source([QUADRATIC, of_scalars(jnp.sin, "FuzzPs")], "c")
 
 
-@pytest.mark.parametrize("key", TARGETS)
+@pytest.mark.parametrize("key", LANGUAGES)
 def test_no_header_leaves_its_comment(key):
-    precision = next(iter(TARGETS[key].types))
+    precision = next(iter(LANGUAGES[key].types))
     text = (
         "first line\nsecond line */ \\ \u2028 \x1b\x9b\b\u202eθf ∈ [0, π/2] ½ "
         + "long " * 40
         + "\\"
     )
-    source = write(QUADRATIC, key, precision, header={"Label\n": text})
-    comment = [line for line in source.splitlines() if line.startswith(TARGETS[key].comment)]
+    source = write_source(QUADRATIC, key, precision, header={"Label\n": text})
+    comment = [line for line in source.splitlines() if line.startswith(LANGUAGES[key].comment)]
     assert source.isascii() and source.replace("\n", "").isprintable()
     assert "theta_f in [0, pi/2] 1/2" in source
     assert "\\" not in source
@@ -455,12 +455,12 @@ def test_no_header_leaves_its_comment(key):
 
 
 def test_units_and_domains_stand_above_the_function():
-    assert "// alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad.\n" in write(COEFFICIENTS, "c")
+    assert "// alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad.\n" in write_source(COEFFICIENTS, "c")
 
 
 def test_python_takes_arrays_that_broadcast():
     names = {}
-    exec(write([COEFFICIENTS, QUADRATIC], "python"), names)
+    exec(write_source([COEFFICIENTS, QUADRATIC], "python"), names)
     alpha = np.linspace(0.2, 0.9, 5)[:, None]
     theta = np.linspace(0.1, 1.5, 4)
     coefficients = names["CalcFuzzPsCoeffs"](alpha, theta)
@@ -472,7 +472,7 @@ def test_python_takes_arrays_that_broadcast():
 def test_python_keeps_the_precision_where_no_array_says_it():
     function = of_scalars(lambda x: (jnp.where(x > 0.5, 0.1, 0.2) * 3.0, jnp.asarray(0.1)), "x", 2)
     names = {}
-    exec(write(function, "python", "half"), names)
+    exec(write_source(function, "python", "half"), names)
     chosen, constant = names["Example"](np.array([0.25, 0.75]))
     assert chosen.dtype == constant.dtype == np.float16
     np.testing.assert_array_equal(chosen, np.float16([0.2, 0.1]) * np.float16(3.0))

@@ -5,7 +5,7 @@ import pytest
 from jax import lax
 from jax.scipy.special import erf
 
-from programs.function import Function, Parameter, group_inputs, input_names
+from programs.functions import Function, Parameter, group_inputs, input_names
 from programs.program import Program, Step, evaluate, interpret
 from programs.tracing.tracer import trace
 

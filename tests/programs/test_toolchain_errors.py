@@ -7,7 +7,7 @@ import tempfile
 import numpy as np
 import pytest
 
-from programs.function import Function, Parameter
+from programs.functions import Function, Parameter
 from programs.toolchains import (
     TOOLCHAINS,
     ToolchainError,
@@ -112,10 +112,10 @@ def test_a_function_of_another_name_is_refused():
 def test_what_is_missing_is_a_reason_and_never_a_value(monkeypatch):
     monkeypatch.setenv("PATH", "")
     for module in TOOLCHAINS:
-        name = f"programs.toolchains.{module}.packaged"
+        name = f"programs.toolchains.{module}.packaged_file"
         if module in ("slang", "hlsl", "cuda"):
             monkeypatch.setattr(name, lambda package, file: None)
-    monkeypatch.setattr(device, "packaged", lambda package, file: None)
+    monkeypatch.setattr(device, "packaged_file", lambda package, file: None)
     monkeypatch.setattr(device, "_workers", [])
     monkeypatch.setattr(osl, "renderer", lambda: None)
     reasons = {target: chain.missing("float") for target, chain in TOOLCHAINS.items()}

@@ -5,9 +5,9 @@ import tempfile
 import numpy as np
 import pytest
 
-from programs.function import Function, Parameter
+from programs.functions import Function, Parameter
 from programs.toolchains import cuda, hlsl, osl, toolchain
-from programs.toolchains.precision import number_type
+from programs.precision import number_type
 
 UNIT = (-1.0, 1.0)
 SCALAR = Function("Ratio", "one in, one out", (Parameter("x", UNIT),), None, "y", lambda x: x)

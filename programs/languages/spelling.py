@@ -14,7 +14,7 @@ PRECISIONS: dict[str, type[np.floating]] = {
 }
 
 
-class Binding(IntEnum):
+class Precedence(IntEnum):
     """How tightly an expression holds together, from a whole argument to a single word."""
 
     ARGUMENT = 0
@@ -36,12 +36,12 @@ class Spelling:
     """
 
     template: str
-    binding: Binding = Binding.ATOM
+    precedence: Precedence = Precedence.ATOM
     atoms: bool = False
 
 
 @dataclass(frozen=True)
-class Target:
+class Language:
     """A language that functions are written in.
 
     Templates are `str.format` strings: `head_one` and `head_many` have {type}, {function} and
@@ -61,29 +61,29 @@ class Target:
     prologue: Mapping[str, tuple[str, ...]]
     comment: str = "//"
     boolean: str = "bool"
-    scalar_in: str = "{type} {name}"
-    array_in: str = "{type} {name}[{size}]"
-    array_out: str = "{type} {name}[{size}]"
-    head_one: str = "{type} {function}({arguments})"
-    head_many: str = "void {function}({arguments})"
-    opening: str | None = "{"
-    closing: str | None = "}"
-    local: str = "const {type} {name} = {value};"
-    give: str = "return {value};"
-    store: str = "{name}[{index}] = {value};"
+    scalar_argument: str = "{type} {name}"
+    array_argument: str = "{type} {name}[{size}]"
+    array_result: str = "{type} {name}[{size}]"
+    scalar_head: str = "{type} {function}({arguments})"
+    array_head: str = "void {function}({arguments})"
+    body_opening: str | None = "{"
+    body_closing: str | None = "}"
+    local_variable: str = "const {type} {name} = {value};"
+    return_statement: str = "return {value};"
+    store_statement: str = "{name}[{index}] = {value};"
     # set where several results are returned together instead of stored one by one
-    several: str | None = None
+    return_all: str | None = None
     table_opening: str = "static const {type} {name}[{size}] = {{"
     table_closing: str = "}};"
     # lines at the head of a body that bring an argument to the precision
-    receive_scalar: str | None = None
-    receive_array: str | None = None
+    scalar_conversion: str | None = None
+    array_conversion: str | None = None
     # a literal where nothing around it says its type
-    lone_literal: str = "{}"
+    typed_literal: str = "{}"
     # whether an expression that runs over lines must stand in parentheses
-    bracketed: bool = False
+    parenthesize_lines: bool = False
     # the longest program that is worth printing
-    limit: int = 20_000
+    max_operations: int = 20_000
 
 
 def spell(functions: Mapping[str, str | Spelling]) -> dict[str, Spelling]:
@@ -108,7 +108,7 @@ def words(*lists: str) -> frozenset[str]:
     return frozenset(word for each in lists for word in each.split())
 
 
-def shortest(value: float, precision: str) -> str:
+def shortest_decimal(value: float, precision: str) -> str:
     """Write a number with the fewest digits that read back as the same number of that precision.
 
     Arguments: `value`, any finite number; `precision`, a key of PRECISIONS. Returns a decimal with

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from programs.function import Function, input_names
-from programs.toolchains.precision import number_type, rounded
+from programs.functions import Function, input_names
+from programs.precision import number_type, rounded
 from programs.toolchains.process import ToolchainError
 
 
@@ -14,14 +14,14 @@ from programs.toolchains.process import ToolchainError
 class Toolchain:
     """How one language is compiled and run on this machine.
 
-    `absence` gives None for a precision that it can run, else the reason; `evaluate` takes the
+    `missing_reason` gives None for a precision that it can run, else the reason; `evaluate` takes the
     source, the function, float64 inputs that the precision holds exactly, and the precision, and
     gives the values; `versions` says what compiles and what runs; `note` what a reader of the
     figures must know.
     """
 
     target: str
-    absence: Callable[[str], str | None]
+    missing_reason: Callable[[str], str | None]
     evaluate: Callable[[str, Function, np.ndarray, str], np.ndarray]
     versions: Callable[[], str]
     note: str
@@ -37,7 +37,7 @@ class Toolchain:
         Raises ValueError for an unknown precision.
         """
         number_type(precision)
-        return self.absence(precision)
+        return self.missing_reason(precision)
 
     def run(
         self, source: str, function: Function, inputs: np.ndarray, precision: str
@@ -77,11 +77,11 @@ def result_count(function: Function) -> int:
     return 1 if function.result is None else function.result
 
 
-def refusal(language: str, function: Function, precision: str) -> str:
+def compile_failure(language: str, function: Function, precision: str) -> str:
     """Give the line that begins the error when a compiler refuses a function."""
     return f"{language} code of {function.name} in {precision} does not compile"
 
 
-def breakdown(language: str, function: Function, precision: str) -> str:
+def run_failure(language: str, function: Function, precision: str) -> str:
     """Give the line that begins the error when a compiled function does not run to its end."""
     return f"{language} code of {function.name} in {precision} compiles but does not run"

@@ -1,4 +1,4 @@
-"""What is exported: a scalar JAX function with the names, domains and units its users see."""
+"""Functions to export: a JAX function of scalars, with argument names, domains and units."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from typing import Any
 class Parameter:
     """One argument of an exported function.
 
-    `name` is the identifier that the user of the shader sees, `domain` the closed interval that
-    the function is made for (of each element, in `unit`), `size` is None for a scalar and n for a
-    fixed array of n numbers. Raises ValueError for a name that is no identifier, an empty or
-    infinite domain, or a size below one.
+    `name` is the identifier that appears in the shader. `domain` is the closed interval (low, high)
+    that the function is made for, in `unit`; for an array it holds for each element. `size` is None
+    for a scalar and n for an array of n numbers. Raises ValueError for a name that is not an
+    identifier, for an empty or infinite domain, and for a size below one.
     """
 
     name: str
@@ -34,12 +34,13 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Function:
-    """A named JAX function of scalars, as it is printed, counted, compiled and compared.
+    """A named JAX function that can be printed as code, counted, compiled and verified.
 
-    `call` takes scalars, and tuples of scalars for arrays, in the order of `parameters`; it gives a
-    scalar (`result` None) or a tuple of `result` scalars, which printed code fills into an array
-    called `result_name`. `summary` is one line for the header. Raises ValueError for names that
-    are no identifiers or that occur twice, and for a result below one.
+    `call` takes its arguments in the order of `parameters`: a scalar for each scalar parameter, a
+    tuple of scalars for each array. If `result` is None, it returns one scalar. Otherwise it
+    returns a tuple of `result` scalars, and printed code stores them in an array that is called
+    `result_name`. `summary` is one line for the comment above the code. Raises ValueError for names
+    that are not identifiers or that occur twice, and for a `result` below one.
     """
 
     name: str
@@ -69,20 +70,20 @@ def function(
     result: int | None = None,
     result_name: str = "result",
 ) -> Function:
-    """Make any JAX function of scalars one that can be exported, counted and verified.
+    """Wrap any JAX function of scalars in a `Function`, with defaults for what is rarely needed.
 
-    Arguments: `name` and `parameters` as the user of the shader sees them; `call`, in JAX;
-    `summary`, one line for the comment above it; `result`, None for a scalar or how many numbers
-    it gives, in an array called `result_name`. Returns the function. Raises ValueError for names
-    that are no identifiers or occur twice.
+    Arguments: `name` and `parameters`, as they appear in the shader; `call`, the JAX function;
+    `summary`, one line for the comment above the code; `result`, None for a scalar result, else the
+    number of results, which are stored in an array that is called `result_name`. Returns the
+    function. Raises ValueError for names that are not identifiers or that occur twice.
     """
     return Function(name, summary or f"{name}.", tuple(parameters), result, result_name, call)
 
 
 def input_names(function: Function) -> tuple[str, ...]:
-    """Name every scalar input in order: `x` for a scalar, `c[0]`, `c[1]`, … for an array.
+    """Return a name for each number of one evaluation's input, in order.
 
-    Arguments: `function`. Returns as many names as there are numbers in one evaluation's input.
+    A scalar `x` has the name `x`; an array `c` of two has the names `c[0]` and `c[1]`.
     """
     names = []
     for parameter in function.parameters:
@@ -96,9 +97,9 @@ def input_names(function: Function) -> tuple[str, ...]:
 def group_inputs(function: Function, values: Sequence[Any]) -> tuple[Any, ...]:
     """Group a flat row of inputs into the arguments of `function.call`.
 
-    Arguments: `function`; `values`, one number (or array) a scalar input, in the order of
-    `input_names`. Returns one entry a parameter: the value, or a tuple of values for an array.
-    Raises ValueError when their number differs from the function's.
+    Arguments: `values`, one number (or one column of numbers) for each of `input_names`, in that
+    order. Returns one entry for each parameter: the value of a scalar, a tuple of values of an
+    array. Raises ValueError when `values` has another length than `input_names`.
     """
     expected = len(input_names(function))
     if len(values) != expected:

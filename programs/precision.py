@@ -1,14 +1,19 @@
-"""The three precisions as NumPy sees them, and rounding to them."""
+"""The floating-point precisions that code can be written in, and rounding to them."""
 
 import numpy as np
 
-from programs.languages.language import PRECISIONS
+# Precision name -> the NumPy type with the same format. No other module lists these names.
+PRECISIONS: dict[str, type[np.floating]] = {
+    "half": np.float16,
+    "float": np.float32,
+    "double": np.float64,
+}
 
 
 def number_type(precision: str) -> type[np.floating]:
-    """NumPy's scalar type of a precision.
+    """Return NumPy's scalar type of a precision.
 
-    Arguments: `precision`, one of "half", "float", "double". Raises ValueError for another name.
+    Arguments: `precision`, a key of PRECISIONS. Raises ValueError for any other name.
     """
     if precision not in PRECISIONS:
         raise ValueError(f"precision is {precision!r}; allowed: {', '.join(PRECISIONS)}")
@@ -16,10 +21,10 @@ def number_type(precision: str) -> type[np.floating]:
 
 
 def rounded(values: np.ndarray, precision: str) -> np.ndarray:
-    """Round to the nearest number of a precision, ties to even, kept as float64.
+    """Round to the nearest number of a precision (ties to even); the result is still float64.
 
-    Arguments: `values`, any shape; `precision` as in `number_type`. Returns float64 of the same
-    shape. Raises ValueError when a value is not finite, or too large for the precision.
+    Arguments: `values`, of any shape; `precision`, a key of PRECISIONS. Returns float64 of the same
+    shape. Raises ValueError when a value is not finite or is too large for the precision.
     """
     if not np.isfinite(values).all():
         raise ValueError("inputs hold a value that is not finite; allowed: finite numbers")
