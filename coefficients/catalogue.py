@@ -16,7 +16,7 @@ from coefficients.agreement import fitted_form
 from coefficients.table import Table, read
 from fitting import FittedForm
 from integrals.reference import Axis
-from programs.function import Function
+from programs.functions import Function
 from quantities import Problem, problem, problems
 from quantities.calling_convention import renamed
 

@@ -21,7 +21,7 @@ from coefficients.shaders import Shader
 from fitting import exact_values
 from fitting.points.grids import off_grid_points
 from integrals import Axis
-from programs.function import Function
+from programs.functions import Function
 from programs.languages import PRECISIONS, target
 from programs.printing.printer import write
 from programs.program import evaluate

@@ -10,7 +10,7 @@ import numpy as np
 from jax import Array
 
 from integrals.reference import Axis, Reference
-from programs.function import Function, Parameter
+from programs.functions import Function, Parameter
 from programs.program import Program
 from programs.tracing.tracer import trace
 

@@ -56,9 +56,7 @@ class _Columns:
         denominator, rms = parts.b0, np.inf
         for _ in range(LINEARISED):
             matrix, values = a - exact[:, None] * b, exact * parts.b0 - parts.a0
-            z = np.linalg.lstsq(
-                matrix / denominator[:, None], values / denominator, rcond=None
-            )[0]
+            z = np.linalg.lstsq(matrix / denominator[:, None], values / denominator, rcond=None)[0]
             denominator = parts.b0 + b @ z
             if denominator.min() <= 0:
                 return np.inf

@@ -15,9 +15,9 @@ from jax import Array
 
 from fitting.form import Form
 from programs.bounding.denominators import ALLOWED, operands
-from programs.function import Function, Parameter
+from programs.functions import Function, Parameter
 from programs.operations import OPERATIONS
-from programs.program import Program, interpret, part
+from programs.program import Program, interpret, subprogram
 from programs.tracing.tracer import trace
 
 # Coefficients are traced as inputs; their range says nothing.
@@ -70,7 +70,7 @@ def linear_parts(form: Form, points: np.ndarray) -> LinearParts | None:
     return LinearParts(a0, a, b0, b)
 
 
-class _NotLinear(Exception):  # noqa: N818  no error: it only ends the evaluation
+class _NotLinear(Exception):
     """The program does something with a coefficient that no quotient of linear functions does."""
 
 
@@ -195,7 +195,7 @@ def derived_positive(form: Form) -> Callable[..., Array]:
         if value in held
         and not (value >= first and program.steps[value - first].operation == "sqrt")
     ]
-    wanted = part(program, chosen)
+    wanted = subprogram(program, chosen)
 
     def positive(coefficients, *point) -> Array:
         if not chosen:

@@ -15,7 +15,7 @@ from jax.ad_checkpoint import checkpoint_name
 
 from fitting.form import FittedForm
 from integrals.reference import Axis
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 
 # Nodes an axis at which a first stage is sampled for the range of its results.
 _SAMPLED = 33

@@ -9,7 +9,7 @@ from jax import Array
 
 from fitting.form import Form
 from integrals.reference import Axis, Reference
-from programs.function import Function
+from programs.functions import Function
 from quantities.calling_convention import CallingConvention
 from quantities.family import Family
 

@@ -1,6 +1,6 @@
 """The quantities that are known, by name; a quantity comes in by `register`."""
 
-from quantities.fuzz import G, PS, Q, R, VELVET
+from quantities.fuzz import PS, VELVET, G, Q, R
 from quantities.problem import Problem
 
 _PROBLEMS: dict[str, Problem] = {each.name: each for each in (PS, G, Q, R, VELVET)}

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 from coefficients.shaders import EXACT_PS, exact_ps, shader
 from programs.cost import Cost
-from programs.function import Function
+from programs.functions import Function
 from programs.toolchains.throughput import Throughput, throughput
 from shadefit.export import KINDS, costs
 from shadefit.terminal import print_json, print_table

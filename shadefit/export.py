@@ -15,7 +15,7 @@ from coefficients.verify import Difference, Problem, precision_of, run_code, tex
 from fitting import off_grid_errors
 from fitting.points.scattered import COUNTS
 from programs.cost import Cost, count
-from programs.function import Function
+from programs.functions import Function
 from programs.languages import PRECISIONS, target
 from programs.printing.printer import write
 from programs.toolchains import ToolchainError

@@ -6,6 +6,7 @@ from fitting.form import FittedForm, Form, traced
 from integrals.reference import Axis, box_of
 from programs.bounding.denominators import DenominatorBound, prove_no_pole
 
+
 def proof_axes(form: Form) -> tuple[Axis, ...]:
     """Return the axes that proofs about a form are made over."""
     return form.axes if form.proofs.axes is None else form.proofs.axes

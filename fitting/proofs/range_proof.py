@@ -6,7 +6,7 @@ from fitting.form import FittedForm, traced
 from fitting.points.scattered import scattered_points
 from fitting.proofs.pole_proof import proof_axes
 from integrals.reference import box_of
-from programs.bounding.branch_and_bound import Bounds, bound_output
+from programs.bounding.branch_and_bound import Bounds, BranchAndBound
 from programs.bounding.denominators import NOWHERE_NEGATIVE, within
 
 # Bounds are within this of values that are attained.
@@ -36,25 +36,20 @@ def certify_range(fitted: FittedForm, tightness: float = TIGHTNESS) -> Bounds | 
         return (below >= low) & (above <= high)
 
     program = traced(fitted, lambda *point: form(constants, *point), form.axes)
-    split = form.proofs.first_split
-    found = bound_output(
-        program, box_of(form.axes), FRACTIONS, settled, points, first_split=split
-    )
+    solver = BranchAndBound(first_split=form.proofs.first_split)
+    found = solver.bound_output(program, box_of(form.axes), FRACTIONS, settled, points)
     return found if np.isfinite(found.lower) else None
 
 
 def _by_margins(fitted: FittedForm) -> Bounds | None:
     margins, constants, axes = fitted.form.proofs.margins, fitted.constants, proof_axes(fitted.form)
     assert margins is not None
+    solver = BranchAndBound(first_split=fitted.form.proofs.first_split)
     count, boxes = len(margins(constants, *(axis.lower for axis in axes))), 0
     for k in range(count):
         program = traced(fitted, lambda *point, k=k: margins(constants, *point)[k], axes)
-        found = bound_output(
-            program,
-            box_of(axes),
-            NOWHERE_NEGATIVE,
-            within(NOWHERE_NEGATIVE),
-            first_split=fitted.form.proofs.first_split,
+        found = solver.bound_output(
+            program, box_of(axes), NOWHERE_NEGATIVE, within(NOWHERE_NEGATIVE)
         )
         if not np.isfinite(found.lower):
             return None

@@ -190,4 +190,3 @@ def _problem(
 
 def _is_good(problem: Residuals, z: np.ndarray) -> bool:
     return bool(np.isfinite(problem.values(z)).all() and problem.positive(z).min() > 0)
-

@@ -71,8 +71,7 @@ def residuals(
     )
     return Residuals(
         lambda z: (at(_values, z, points, _BATCH) - exact) * scale,
-        lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free]
-        * scale[rows, None],
+        lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free] * scale[rows, None],
         lambda z: at(_rooms, z, points, _BATCH),
         lambda z, rows: at(_room_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free],
         least,

@@ -16,6 +16,7 @@ from jax import Array
 from fitting.points.grids import Grid, trapezoid_grid
 from fitting.shapes.quotients import Quotients
 from fitting.solvers.least_squares import solve_linear, solve_nonlinear
+from integrals.reference import Axis
 
 # Denominators are pushed up to this at the nodes of a grid of its own, PENALTY_NODES an axis.
 DENOMINATOR_FLOOR = 0.02
@@ -27,23 +28,24 @@ Errors = Callable[[Array], Array]
 
 def fit_quotients(
     shape: Quotients,
-    grid: Grid,
-    root: Array,
+    points: Array,
+    penalised: Array,
+    root: Array | np.ndarray,
     targets: Array,
     errors: Errors,
     steps: int = 300,
 ) -> Array:
     """Return the coefficients (k,) or (rows, k) that minimise the sum of squared `errors`.
 
-    `root` (n,) holds the roots of the nodes' weights. The polynomial start fits `targets`, (n,) or
+    `points` (n, axes) are the nodes, `root` (n,) the roots of their weights, and denominators are
+    kept above the floor at the points `penalised`. The polynomial start fits `targets`, (n,) or
     (n, rows), which are the values that the quotients should have. To be called within `jax.jit`.
     """
-    split, offset = shape.above + 1, jnp.asarray(shape.offset)
-    numerator, features, factor = shape.columns(jnp.asarray(grid.points))
-    penalty_points = jnp.asarray(trapezoid_grid(grid.axes, PENALTY_NODES).points)
-    penalty_features = shape.columns(penalty_points)[1]
+    split, offset = shape.above + 1, np.asarray(shape.offset)
+    numerator, features, factor = shape.columns(points)
+    penalty_features = shape.columns(penalised)[1]
     rows = targets.shape[1:]
-    weights = root.reshape(-1, *(1 for _ in rows))
+    weights = jnp.asarray(root).reshape(-1, *(1 for _ in rows))
     column = factor.reshape(-1, *(1 for _ in rows))
 
     def residual(flat: Array) -> Array:
@@ -58,14 +60,21 @@ def fit_quotients(
     return solve_nonlinear(residual, polynomials.ravel(), steps).reshape(*rows, -1)
 
 
+def penalty_points(axes: tuple[Axis, ...]) -> np.ndarray:
+    """Return the points (n, axes) at which denominators are kept above the floor."""
+    return trapezoid_grid(axes, PENALTY_NODES).points
+
+
 def fit_quotient_on_grid(shape: Quotients, grid: Grid, exact: Array) -> Array:
     """Fit one quotient to exact values (points,) on a grid; returns coefficients (k,)."""
 
     @jax.jit
-    def fit(root: Array, exact: Array) -> Array:
-        return fit_quotients(shape, grid, root, exact, lambda values: root * (values - exact))
+    def fit(points: Array, penalised: Array, root: Array, exact: Array) -> Array:
+        return fit_quotients(
+            shape, points, penalised, root, exact, lambda values: root * (values - exact)
+        )
 
-    return fit(np.sqrt(grid.weights), exact)
+    return fit(grid.points, penalty_points(grid.axes), np.sqrt(grid.weights), exact)
 
 
 def _penalty(denominators: Array) -> Array:

@@ -21,7 +21,7 @@ from fitting.form import Form
 from fitting.points.grids import Grid, trapezoid_grid
 from fitting.shapes.quotients import Quotients
 from fitting.solvers.on_grid import GridFit, Progress
-from fitting.solvers.quotients import fit_quotients
+from fitting.solvers.quotients import fit_quotients, penalty_points
 
 
 @dataclass(frozen=True)
@@ -104,20 +104,20 @@ class Separable:
         root = np.sqrt(grid.weights)
         shape = fits.optimum.shape
 
-        @jax.jit
-        def fit(factors: Array, optimum: Array) -> Array:
-            outer = root.reshape(*shape[:2], 1)
+        outer = root.reshape(*shape[:2], 1)
 
+        @jax.jit
+        def fit(points: Array, penalised: Array, factors: Array, optimum: Array) -> Array:
             def errors(values: Array) -> Array:
                 apart = values.reshape(shape) - optimum
                 return outer * jnp.einsum("tij,atj->ati", factors, apart)
 
             targets = optimum.reshape(-1, shape[2])
             return fit_quotients(
-                self.shape, grid, jnp.asarray(root), targets, errors, self.steps
+                self.shape, points, penalised, root, targets, errors, self.steps
             )
 
-        return fit(fits.factors, fits.optimum)
+        return fit(grid.points, penalty_points(grid.axes), fits.factors, fits.optimum)
 
     def _largest_error(
         self, form: Form, grid: Grid, measure: str, first: Array

@@ -1,12 +1,8 @@
 """G: average over lights of what the layer scatters to the view."""
 
-from dataclasses import replace
-
-import numpy as np
-
 import integrals
 from integrals.fuzz.g import ambient_scattering
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.fuzz.g_forms import AXES, DECAYS, FACTORS, RATES, candidates, decay_g, tied_g

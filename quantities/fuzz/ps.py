@@ -6,7 +6,7 @@ import numpy as np
 
 import integrals
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.fuzz.lights import cosines_at

@@ -2,7 +2,7 @@
 
 import integrals
 from integrals.fuzz.q import average_penetration
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.fuzz.q_forms import AXES, STRUCTURES, candidates, pole_q

@@ -49,9 +49,7 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
         raise ValueError("terms + poles = 0: at least one is needed")
 
     def value(c, density: Scalar) -> Array:
-        return _surround(
-            structure, jnp.asarray(density), lambda x: poles_value(c, terms, poles, x)
-        )
+        return _surround(structure, jnp.asarray(density), lambda x: poles_value(c, terms, poles, x))
 
     return Form(
         name="pole-q",

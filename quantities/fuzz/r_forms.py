@@ -71,14 +71,10 @@ def monomial_r(
     )
 
 
-
-
 def candidates(least_alpha: float, known: tuple[Form, ...] = ()) -> Iterator[Form]:
     """Yield the `known` forms, then forms of few monomials to many, in each of the variables."""
     grown = (
-        monomial_r(
-            variable=variable, numerator=above, denominator=below, least_alpha=least_alpha
-        )
+        monomial_r(variable=variable, numerator=above, denominator=below, least_alpha=least_alpha)
         for variable in VARIABLES
         for above, below in greedy_sets(
             monomial_r(

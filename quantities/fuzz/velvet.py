@@ -2,7 +2,7 @@
 
 import integrals
 from integrals.fuzz.velvet import normalisation
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.fuzz.velvet_form import AXES, CONSERVATIVE_NORM
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
@@ -27,9 +27,7 @@ VELVET = Problem(
         remark=_REMARK,
     ),
     closed_form=normalisation,
-    exact_code=ExactCode(
-        "closed form", AXES, exact_functions, lambda points: (points,), _REMARK
-    ),
+    exact_code=ExactCode("closed form", AXES, exact_functions, lambda points: (points,), _REMARK),
     plot=PlotHints({"asymmetry": AxisHint("asymmetry $k$", -0.95, 0.0, -0.5)}, largest_error=1e-3),
     topic="fuzz",
 )

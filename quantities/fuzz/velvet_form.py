@@ -13,14 +13,14 @@ import numpy as np
 from jax import Array
 from scipy.optimize import linprog
 
-from fitting.points.grids import Grid, trapezoid_grid
-from fitting.solvers.on_grid import OnGrid
 from fitting.form import FittedForm, Form, Proofs, Stage
 from fitting.goal import Goal
+from fitting.points.grids import Grid, trapezoid_grid
+from fitting.solvers.on_grid import OnGrid
 from integrals import VELVET
 from integrals.fuzz.velvet import normalisation, series_coefficients
 from programs.bounding.denominators import DenominatorBound, bound_below
-from programs.function import Function, Parameter
+from programs.functions import Function, Parameter
 from programs.tracing.tracer import trace
 from shading.types import Scalar
 

@@ -19,7 +19,7 @@ from integrals import INTEGRALS
 from integrals.fuzz.g import ambient_scattering
 from integrals.fuzz.q import average_penetration
 from programs.cost import count
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 from programs.program import evaluate
 from programs.tracing.tracer import trace
 from shadefit.figures.style import COLOURS, KINDS, MARKERS

@@ -20,7 +20,7 @@ from integrals.fuzz.g import ambient_scattering
 from integrals.fuzz.ps import fraction_at
 from integrals.fuzz.q import average_penetration
 from integrals.rules.interval import gauss_legendre
-from programs.function import Function, Parameter, function
+from programs.functions import Function, Parameter, function
 from programs.printing.printer import write
 from shadefit.figures.style import ERRORS, VALUES
 from shadefit.figures.values import kind_of, quantities, tables_of
