@@ -1,1 +1,1 @@
-"""Proven bounds of a program over whole boxes: interval arithmetic, branch and bound."""
+"""Proven bounds of a program on whole boxes, by interval arithmetic and branch and bound."""

@@ -1,7 +1,7 @@
-"""Interval arithmetic with first derivatives, for bounds that hold between the samples too.
+"""Interval arithmetic with first derivatives: bounds that hold on a whole box, not only at samples.
 
-An `Enclosure` holds, for many boxes at once, an interval that contains every value that an
-expression takes on the box, and one for each partial derivative. Every bound is rounded outwards.
+An `Enclosure` holds, for many boxes at once, an interval that contains all values of an expression
+on the box, and one interval for each partial derivative. Every bound is rounded outwards.
 """
 
 from typing import NamedTuple
@@ -10,35 +10,35 @@ import numpy as np
 
 from programs.program import Program, interpret
 
-# NumPy's elementary functions are accurate to 4 units in the last place.
+# NumPy's elementary functions have errors of at most 4 units in the last place.
 _ELEMENTARY_ULPS = 4
 
 
 class Interval(NamedTuple):
-    """Arrays of lower and upper bounds."""
+    """Lower and upper bounds, one of each for every box."""
 
     lower: np.ndarray
     upper: np.ndarray
 
 
 class Enclosure(NamedTuple):
-    """The value (boxes,) and the gradient (inputs, boxes) of an expression on every box."""
+    """Intervals of the value (boxes,) and of the gradient (inputs, boxes) of an expression."""
 
     value: Interval
     gradient: Interval
 
 
 def enclose(program: Program, lower: np.ndarray, upper: np.ndarray) -> list[Interval]:
-    """Bound each output of a program on boxes given by corners (boxes, inputs).
+    """Bound each output of a program on boxes with corners `lower` and `upper` (boxes, inputs).
 
-    Both the natural extension and the mean value form are taken, and intersected. Raises
-    ValueError for an operation that has no interval version.
+    The result is the intersection of two enclosures: the natural interval extension and the mean
+    value form. Raises ValueError for an operation that has no interval version.
     """
     return [each.value for each in enclose_with_slopes(program, lower, upper)]
 
 
 def enclose_with_slopes(program: Program, lower: np.ndarray, upper: np.ndarray) -> list[Enclosure]:
-    """Give the same bounds with those of the natural extension's derivatives."""
+    """Return the bounds of `enclose` together with bounds of the gradient on each box."""
     inputs = [_variable(k, lower, upper) for k in range(lower.shape[1])]
     middle = (lower + upper) / 2
     centre = [Interval(x, x) for x in middle.T]
@@ -58,7 +58,7 @@ def _mean_value(natural: Enclosure, central: Interval, offsets: list[Interval]) 
         slope = Interval(natural.gradient.lower[k], natural.gradient.upper[k])
         total = _add(total, _mul(slope, offset))
     lower, upper = natural.value
-    # An unbounded slope makes 0·∞ = NaN: only the natural bounds are left then.
+    # An unbounded slope gives 0·∞ = NaN, which fmax and fmin ignore: the natural bounds remain.
     return Interval(np.fmax(lower, total.lower), np.fmin(upper, total.upper))
 
 
@@ -136,8 +136,8 @@ def _sqrt(a: Interval) -> Interval:
 def _cos(a: Interval) -> Interval:
     ends = np.cos(a.lower), np.cos(a.upper)
     lower, upper = _outward(np.minimum(*ends), np.maximum(*ends), _ELEMENTARY_ULPS)
-    # A multiple of π inside: an even one is a maximum, an odd one a minimum. The margin makes
-    # a multiple that rounding puts on either side count as inside.
+    # The cosine has a maximum at each even multiple of π and a minimum at each odd one. The margin
+    # also counts multiples that rounding may have put just outside the interval.
     first = np.ceil(a.lower / np.pi - 1e-12)
     last = np.floor(a.upper / np.pi + 1e-12)
     has_even = (last - first >= 1) | ((last == first) & (first % 2 == 0))
@@ -166,7 +166,7 @@ def _product(a: Enclosure, b: Enclosure) -> Enclosure:
 
 
 def _unary(image, slope):
-    """Lift a function and its derivative, given as image and slope of (argument, image)."""
+    """Make the enclosure of a function from its image and its slope(argument, image)."""
 
     def apply(a: Enclosure) -> Enclosure:
         value = image(a.value)
@@ -183,7 +183,7 @@ def _quotient(a: Enclosure, b: Enclosure) -> Enclosure:
 
 
 def _max(a: Interval, b: Interval) -> Interval:
-    # A lower bound of one is a lower bound of the larger, even if nothing is known of the other.
+    # A lower bound of one operand bounds the maximum, even if the other has no bound (NaN).
     return Interval(np.fmax(a.lower, b.lower), np.maximum(a.upper, b.upper))
 
 
@@ -192,12 +192,12 @@ def _min(a: Interval, b: Interval) -> Interval:
 
 
 def _either(image):
-    """Lift a choice of one of two."""
+    """Make the enclosure of an operation that returns one of its two operands."""
     return lambda a, b: Enclosure(image(a.value, b.value), _hull(a.gradient, b.gradient))
 
 
 def _undecided(*_) -> None:
-    """Leave a comparison open: a selection takes the hull of both its sides."""
+    """Do not evaluate a condition: a selection is enclosed by the hull of both its cases."""
 
 
 _CONDITIONS = dict.fromkeys(("lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not"), _undecided)
@@ -217,7 +217,7 @@ _OPERATIONS = {
     "select": lambda _, a, b: _either(_hull)(a, b),
     **_CONDITIONS,
 }
-# The same of values alone.
+# The same operations on values only, for the centre of the mean value form
 _VALUES = {
     "add": _add,
     "sub": _sub,
