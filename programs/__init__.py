@@ -1,5 +1,78 @@
-"""Straight-line programs: what a JAX function of scalars computes, one operation at a time.
+"""Straight-line programs: a JAX function of scalars, written as one operation after the other.
 
-A program is traced from the function's jaxpr. Shader code is printed from it, its operations are
-counted, and its values are bounded over whole boxes: one expression for all of them.
+A program is traced from the jaxpr of a function. The same program is printed as shader code, its
+operations are counted, and its values are bounded on whole boxes. Nothing here knows which quantity
+a function computes.
+
+* `tracing`: from a JAX function to a program
+* `bounding`: proofs by interval arithmetic
+* `printing` and `languages`: source code, and how each language is spelled
+* `toolchains`: compiling, running, verifying and timing the code
+
+The names below are the public ones. Those that need JAX are imported when they are first used, so
+that `programs.languages` does not wait for JAX.
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from programs.bounding.branch_and_bound import Bounds as Bounds
+from programs.bounding.branch_and_bound import BranchAndBound as BranchAndBound
+from programs.bounding.denominators import DenominatorBound as DenominatorBound
+from programs.bounding.denominators import bound_below as bound_below
+from programs.bounding.denominators import prove_no_pole as prove_no_pole
+from programs.cost import KINDS as KINDS
+from programs.cost import Cost as Cost
+from programs.cost import count_operations as count_operations
+from programs.functions import Function as Function
+from programs.functions import Parameter as Parameter
+from programs.functions import function as function
+from programs.functions import group_inputs as group_inputs
+from programs.functions import input_names as input_names
+from programs.languages import LANGUAGES as LANGUAGES
+from programs.languages import Language as Language
+from programs.languages import language as language
+from programs.languages import precision_of as precision_of
+from programs.operations import OPERATIONS as OPERATIONS
+from programs.precision import PRECISIONS as PRECISIONS
+from programs.program import Program as Program
+from programs.program import Step as Step
+from programs.program import evaluate as evaluate
+from programs.program import interpret as interpret
+from programs.program import is_value as is_value
+from programs.program import reachable_values as reachable_values
+from programs.program import subprogram as subprogram
+
+if TYPE_CHECKING:
+    from programs.printing.printer import write_source as write_source
+    from programs.toolchains.process import ToolchainError as ToolchainError
+    from programs.toolchains.registry import toolchain as toolchain
+    from programs.toolchains.throughput import Throughput as Throughput
+    from programs.toolchains.throughput import measure_throughput as measure_throughput
+    from programs.toolchains.verification import CallSequence as CallSequence
+    from programs.toolchains.verification import Check as Check
+    from programs.toolchains.verification import Difference as Difference
+    from programs.toolchains.verification import Trial as Trial
+    from programs.toolchains.verification import check as check
+    from programs.tracing.tracer import trace as trace
+
+_MODULES = {
+    "write_source": "programs.printing.printer",
+    "ToolchainError": "programs.toolchains.process",
+    "toolchain": "programs.toolchains.registry",
+    "Throughput": "programs.toolchains.throughput",
+    "measure_throughput": "programs.toolchains.throughput",
+    "CallSequence": "programs.toolchains.verification",
+    "Check": "programs.toolchains.verification",
+    "Difference": "programs.toolchains.verification",
+    "Trial": "programs.toolchains.verification",
+    "check": "programs.toolchains.verification",
+    "trace": "programs.tracing.tracer",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name that needs JAX or a toolchain when it is first used."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)

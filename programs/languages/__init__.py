@@ -1,35 +1,15 @@
-"""The languages that functions are written in: one file a language, one line in the table.
+"""The languages that functions are written in: one file for each, and one line in the registry.
 
-A target says how a language is spelled: its types, literals, functions, signatures and reserved
-words. What a function computes is none of its business.
+A `Language` says how code is spelled: types, literals, functions, signatures and reserved words. It
+knows nothing of what a function computes. A new language also needs a toolchain, which compiles
+and runs its code (programs/toolchains).
 """
 
-from programs.languages import (
-    c,
-    cpp,
-    cuda,
-    glsl,
-    hlsl,
-    javascript,
-    metal,
-    osl,
-    python,
-    slang,
-    wgsl,
-)
-from programs.languages.spelling import PRECISIONS as PRECISIONS
-from programs.languages.spelling import Spelling as Spelling
+from programs.languages.registry import LANGUAGES as LANGUAGES
+from programs.languages.registry import language as language
+from programs.languages.registry import precision_of as precision_of
 from programs.languages.spelling import Language as Language
-from programs.languages.spelling import shortest as shortest_decimal
-
-LANGUAGES: dict[str, Language] = {
-    module.LANGUAGE.key: module.LANGUAGE
-    for module in (c, cpp, hlsl, glsl, slang, metal, wgsl, osl, cuda, python, javascript)
-}
-
-
-def target(key: str) -> Language:
-    """Give the target of a key; raises ValueError for one that there is none of."""
-    if key not in LANGUAGES:
-        raise ValueError(f"target {key!r} is unknown; allowed: {', '.join(LANGUAGES)}")
-    return LANGUAGES[key]
+from programs.languages.spelling import Precedence as Precedence
+from programs.languages.spelling import Spelling as Spelling
+from programs.languages.spelling import shortest_decimal as shortest_decimal
+from programs.precision import PRECISIONS as PRECISIONS

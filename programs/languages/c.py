@@ -8,12 +8,13 @@ from programs.languages.c_family import (
     reciprocal_root,
     suffixed,
 )
-from programs.languages.spelling import Precedence, Spelling, Language, spell
+from programs.languages.spelling import Language, Precedence, Spelling, spell
+from programs.precision import PRECISIONS
 
 _FLOAT = spell(suffixed(MATH, "f") | reciprocal_root("1.0f", "sqrtf") | SELECTION | COMPARED)
 _DOUBLE = spell(MATH | reciprocal_root("1.0", "sqrt") | SELECTION | COMPARED)
 
-# There are no half functions: compute in float and round.
+# C has no functions of half precision: compute in float and round.
 _HALF = {
     operation: Spelling(f"(_Float16)({how.template})", Precedence.SIGN)
     for operation, how in _FLOAT.items()
@@ -27,7 +28,7 @@ LANGUAGE = Language(
     literals={"half": "(_Float16){}f", "float": "{}f", "double": "{}"},
     functions={"half": _HALF, "float": _FLOAT, "double": _DOUBLE},
     reserved=C_WORDS,
-    prologue={precision: ("#include <math.h>",) for precision in ("half", "float", "double")},
+    prologue=dict.fromkeys(PRECISIONS, ("#include <math.h>",)),
     boolean="int",
     array_argument="const {type} {name}[{size}]",
 )

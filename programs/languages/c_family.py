@@ -1,16 +1,16 @@
-"""What the descendants of C have in common: the words, the functions, the way to select."""
+"""What languages derived from C have in common: reserved words, functions and selections."""
 
 from programs.languages.spelling import Precedence, Spelling, words
 
 SELECTION = {"select": Spelling("{0} ? {1} : {2}", Precedence.SELECTION)}
 
-# C has no cheap minimum: fminf is a call that must mind NaN. A comparison is one instruction.
+# In C, fminf is a slow call, since it must treat NaN. A comparison compiles to one instruction.
 COMPARED = {
     "min": Spelling("{0} < {1} ? {0} : {1}", Precedence.SELECTION, atoms=True),
     "max": Spelling("{0} > {1} ? {0} : {1}", Precedence.SELECTION, atoms=True),
 }
 
-# Functions that go by the same name in every shading language that has a common ancestor in C.
+# Functions that have the same name in all shading languages derived from C
 SHADING = {
     name: name
     for name in words(
@@ -18,7 +18,7 @@ SHADING = {
     )
 }
 
-# The functions of <math.h>, by the operation.
+# Operation -> function of <math.h>
 MATH = {"abs": "fabs"} | {
     name: name
     for name in words(
@@ -45,10 +45,10 @@ CPP_WORDS = C_WORDS | words(
 
 
 def suffixed(names: dict[str, str], suffix: str) -> dict[str, str]:
-    """Give every function of a table its suffix, as C marks the precision of its functions."""
+    """Append a suffix to every function of a table: in C it shows the precision, as in sinf."""
     return {operation: name + suffix for operation, name in names.items()}
 
 
 def reciprocal_root(one: str, root: str) -> dict[str, Spelling]:
-    """Spell the reciprocal square root where there is no function for it."""
+    """Spell the reciprocal square root for a language without a function for it."""
     return {"rsqrt": Spelling(f"{one} / {root}({{0}})", Precedence.PRODUCT)}

@@ -7,13 +7,14 @@ from programs.languages.c_family import (
     SELECTION,
     reciprocal_root,
 )
-from programs.languages.spelling import Spelling, Language, spell
+from programs.languages.spelling import Language, Spelling, spell
+from programs.precision import PRECISIONS
 
 _STANDARD = {operation: f"std::{name}" for operation, name in MATH.items()} | {"abs": "std::abs"}
 _FLOAT = spell(_STANDARD | reciprocal_root("1.0f", "std::sqrt") | SELECTION | COMPARED)
 _DOUBLE = spell(_STANDARD | reciprocal_root("1.0", "std::sqrt") | SELECTION | COMPARED)
 
-# The functions of <cmath> are ambiguous for a half: compute in float and round.
+# A call of a <cmath> function is ambiguous for half precision: compute in float and round.
 _HALF = {
     operation: Spelling(
         "_Float16(" + how.template.replace("{0}", "float({0})").replace("{1}", "float({1})") + ")"
@@ -29,7 +30,7 @@ LANGUAGE = Language(
     literals={"half": "_Float16({}f)", "float": "{}f", "double": "{}"},
     functions={"half": _HALF, "float": _FLOAT, "double": _DOUBLE},
     reserved=CPP_WORDS,
-    prologue={precision: ("#include <cmath>",) for precision in ("half", "float", "double")},
+    prologue=dict.fromkeys(PRECISIONS, ("#include <cmath>",)),
     array_argument="const {type} (&{name})[{size}]",
     array_result="{type} (&{name})[{size}]",
 )

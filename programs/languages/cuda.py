@@ -1,9 +1,9 @@
-"""CUDA C++, for the device and for the host."""
+"""CUDA C++: functions that can be called on the device and on the host."""
 
 from programs.languages.c_family import CPP_WORDS, MATH, SELECTION, reciprocal_root, suffixed
 from programs.languages.spelling import Language, spell, words
 
-# On a device the minimum is one instruction, and fminf is its name on both sides.
+# On the device, fminf is one instruction; the function exists on the host too.
 _MATH = MATH | {"min": "fmin", "max": "fmax"}
 
 LANGUAGE = Language(

@@ -1,7 +1,7 @@
-"""GLSL 4.00 and ESSL 3.00; half needs an extension, doubles have no function but roots."""
+"""GLSL 4.00 and ESSL 3.00. Half precision needs an extension; double has few functions."""
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
-from programs.languages.spelling import Spelling, Language, spell, words
+from programs.languages.spelling import Language, Spelling, spell, words
 
 _FUNCTIONS = spell(
     SHADING | {"rsqrt": "inversesqrt", "atan2": Spelling("atan({0}, {1})")} | SELECTION
@@ -35,7 +35,7 @@ LANGUAGE = Language(
     },
     array_argument="in {type} {name}[{size}]",
     array_result="out {type} {name}[{size}]",
-    # Before GLSL 4.20 a const local must be a constant expression.
+    # Before GLSL 4.20, the value of a const variable must be a constant expression.
     local_variable="{type} {name} = {value};",
     table_opening="const {type} {name}[{size}] = {type}[{size}](",
     table_closing=");",

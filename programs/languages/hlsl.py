@@ -1,11 +1,12 @@
-"""HLSL, shader model 6 (half needs -enable-16bit-types to be 16 bits wide)."""
+"""HLSL, shader model 6. Half has 16 bits only with the flag -enable-16bit-types."""
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
 from programs.languages.spelling import Language, spell, words
+from programs.precision import PRECISIONS
 
 FUNCTIONS = spell(SHADING | {"atan2": "atan2", "rsqrt": "rsqrt"} | SELECTION)
 
-# The intrinsic functions stop at float; of doubles there is arithmetic and comparison.
+# HLSL has no other intrinsic functions of doubles.
 DOUBLE = {operation: FUNCTIONS[operation] for operation in ("abs", "min", "max", "select")}
 
 WORDS = C_WORDS | words(
@@ -31,7 +32,7 @@ LANGUAGE = Language(
     literals={"half": "{}h", "float": "{}f", "double": "{}L"},
     functions={"half": FUNCTIONS, "float": FUNCTIONS, "double": DOUBLE},
     reserved=WORDS,
-    prologue={precision: () for precision in ("half", "float", "double")},
+    prologue=dict.fromkeys(PRECISIONS, ()),
     array_argument="in {type} {name}[{size}]",
     array_result="out {type} {name}[{size}]",
 )

@@ -1,7 +1,7 @@
-"""JavaScript: its only number is a double."""
+"""JavaScript. All its numbers are doubles."""
 
 from programs.languages.c_family import MATH, SELECTION
-from programs.languages.spelling import Precedence, Spelling, Language, spell, words
+from programs.languages.spelling import Language, Precedence, Spelling, spell, words
 
 _NAMES = {operation: f"Math.{name}" for operation, name in MATH.items()} | {
     "abs": "Math.abs",

@@ -27,6 +27,6 @@ LANGUAGE = Language(
     prologue={precision: ("#include <metal_stdlib>",) for precision in ("half", "float")},
     array_argument="thread const {type} (&{name})[{size}]",
     array_result="thread {type} (&{name})[{size}]",
-    # A function's static constants have no address space of their own.
+    # In Metal, a static constant inside a function would need an address space.
     table_opening="const {type} {name}[{size}] = {{",
 )

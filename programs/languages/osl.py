@@ -1,4 +1,4 @@
-"""The Open Shading Language: floats only, and no constants but by good will."""
+"""The Open Shading Language. It has only floats, and no constant variables."""
 
 from programs.languages.c_family import SELECTION, SHADING
 from programs.languages.spelling import Language, spell, words

@@ -1,9 +1,9 @@
-"""Python with NumPy 2: every argument may be an array, and they broadcast."""
+"""Python with NumPy 2. Arguments may be arrays, which broadcast."""
 
 import keyword
 
 from programs.languages.c_family import MATH
-from programs.languages.spelling import Precedence, Spelling, Language, spell, words
+from programs.languages.spelling import Language, Precedence, Spelling, spell, words
 
 _NAMES = {operation: f"np.{name}" for operation, name in MATH.items()} | {
     "abs": "np.abs",
@@ -32,7 +32,7 @@ LANGUAGE = Language(
     name="Python",
     extension="py",
     types=_TYPES,
-    # A bare literal takes the type of the array beside it.
+    # A literal takes the type of the array that it is combined with.
     literals=dict.fromkeys(_TYPES, "{}"),
     functions=dict.fromkeys(_TYPES, _FUNCTIONS),
     reserved=frozenset(keyword.kwlist) | words("np print len range float int match case type"),

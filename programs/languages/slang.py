@@ -1,4 +1,4 @@
-"""Slang: HLSL's spelling, with the roots of doubles too."""
+"""Slang, which is spelled as HLSL is, but has a few more functions of doubles."""
 
 from dataclasses import replace
 
@@ -6,8 +6,8 @@ from programs.languages.hlsl import FUNCTIONS, WORDS
 from programs.languages.hlsl import LANGUAGE as HLSL
 from programs.languages.spelling import words
 
-# More functions of doubles compile, but on what Slang compiles to they have no meaning (measured:
-# through SPIR-V, sin of a double is NaN).
+# Slang compiles more functions of doubles, but to code without meaning: compiled to SPIR-V, the
+# sine of a double was measured to be NaN.
 _DOUBLE = {
     operation: FUNCTIONS[operation]
     for operation in ("abs", "sqrt", "rsqrt", "min", "max", "floor", "ceil", "select")

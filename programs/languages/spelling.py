@@ -1,4 +1,4 @@
-"""How a language is spelled: everything that the printer needs to know of it."""
+"""What a language is: everything that the printer needs to know to write its code."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,16 +6,11 @@ from enum import IntEnum
 
 import numpy as np
 
-# The formats a function can be written in, with the type that rounds as they do.
-PRECISIONS: dict[str, type[np.floating]] = {
-    "half": np.float16,
-    "float": np.float32,
-    "double": np.float64,
-}
+from programs.precision import PRECISIONS
 
 
 class Precedence(IntEnum):
-    """How tightly an expression holds together, from a whole argument to a single word."""
+    """The precedence of an expression: the higher, the fewer places need parentheses around it."""
 
     ARGUMENT = 0
     SELECTION = 1
@@ -30,9 +25,11 @@ class Precedence(IntEnum):
 
 @dataclass(frozen=True)
 class Spelling:
-    """How an operation is written: a template of its operands, and how tightly it binds.
+    """How an operation is written.
 
-    `atoms` is set where an operand is written more than once, and so must be a name or a literal.
+    `template` has {0}, {1}, … for the operands. `precedence` is that of the whole expression.
+    `atoms` is True if an operand is written more than once, so that each operand must be a name or
+    a literal.
     """
 
     template: str
@@ -44,53 +41,65 @@ class Spelling:
 class Language:
     """A language that functions are written in.
 
-    Templates are `str.format` strings: `head_one` and `head_many` have {type}, {function} and
-    {arguments}; the arguments {type}, {name}, {size}; `local` {type}, {name}, {value}; `store`
-    {name}, {index}, {value}; `several` {values}; the table {type}, {name}, {size}. The mappings by
-    precision say which precisions the language has.
+    The fields whose values contain braces are templates for `str.format`; the comments name what
+    they may contain. The keys of the mappings by precision are the precisions of the language.
     """
 
     key: str
     name: str
+    # of source files, without the dot
     extension: str
+    # precision -> type of its numbers
     types: Mapping[str, str]
+    # precision -> template of a literal, with {} for the digits
     literals: Mapping[str, str]
-    # operation -> spelling; an operation that is neither here nor an infix one cannot be written
+    # precision -> operation -> spelling; the operators that all languages share need none
     functions: Mapping[str, Mapping[str, Spelling]]
+    # names that no function, argument or variable may have
     reserved: frozenset[str]
+    # precision -> lines at the start of a file
     prologue: Mapping[str, tuple[str, ...]]
+    # start of a comment
     comment: str = "//"
+    # type of a condition
     boolean: str = "bool"
+    # arguments: {type}, {name} and, for arrays, {size}; an empty array_result means that the
+    # results are returned, not stored in an array
     scalar_argument: str = "{type} {name}"
     array_argument: str = "{type} {name}[{size}]"
     array_result: str = "{type} {name}[{size}]"
+    # heads of functions with a scalar and with an array result: {type}, {function}, {arguments}
     scalar_head: str = "{type} {function}({arguments})"
     array_head: str = "void {function}({arguments})"
     body_opening: str | None = "{"
     body_closing: str | None = "}"
+    # {type}, {name}, {value}
     local_variable: str = "const {type} {name} = {value};"
+    # {value}
     return_statement: str = "return {value};"
+    # stores one of several results: {name}, {index}, {value}
     store_statement: str = "{name}[{index}] = {value};"
-    # set where several results are returned together instead of stored one by one
+    # returns several results together: {values}; None: they are stored one by one
     return_all: str | None = None
+    # around the array of constants: {type}, {name}, {size}
     table_opening: str = "static const {type} {name}[{size}] = {{"
     table_closing: str = "}};"
-    # lines at the head of a body that bring an argument to the precision
+    # statements at the start of a body that convert an argument to the precision: {type}, {name}
     scalar_conversion: str | None = None
     array_conversion: str | None = None
-    # a literal where nothing around it says its type
+    # a literal whose surroundings do not show its type: {type}, and {} for the literal
     typed_literal: str = "{}"
-    # whether an expression that runs over lines must stand in parentheses
+    # whether an expression of several lines must be in parentheses
     parenthesize_lines: bool = False
-    # the longest program that is worth printing
+    # the longest program that can reasonably be printed
     max_operations: int = 20_000
 
 
 def spell(functions: Mapping[str, str | Spelling]) -> dict[str, Spelling]:
-    """Complete a table of spellings: a plain word becomes a call of that name.
+    """Complete a table of spellings: a function's name becomes the template of its call.
 
-    Arguments: `functions`, operation -> name of a function of the same operands, or a Spelling.
-    Returns operation -> Spelling.
+    Arguments: `functions`, operation -> a `Spelling`, or the name of a function that takes the same
+    operands. Returns operation -> `Spelling`.
     """
     calls = {1: "({0})", 2: "({0}, {1})"}
     spelled = {}
@@ -104,16 +113,16 @@ _BINARY = {"min", "max", "pow", "atan2", "and", "or"}
 
 
 def words(*lists: str) -> frozenset[str]:
-    """Split lists of words, as the reserved words of a language are best read and written."""
+    """Split strings of words at spaces and return all words."""
     return frozenset(word for each in lists for word in each.split())
 
 
 def shortest_decimal(value: float, precision: str) -> str:
     """Write a number with the fewest digits that read back as the same number of that precision.
 
-    Arguments: `value`, any finite number; `precision`, a key of PRECISIONS. Returns a decimal with
-    a point, and an exponent where it is shorter. Raises ValueError when the rounded value is not
-    finite.
+    Arguments: `value`, which is rounded to the precision first; `precision`, a key of PRECISIONS.
+    Returns a decimal with a point, and with an exponent if it is very small or large. Raises
+    ValueError when the rounded value is not finite.
     """
     dtype = PRECISIONS[precision]
     with np.errstate(over="ignore"):

@@ -1,7 +1,7 @@
 """WGSL, the shading language of WebGPU."""
 
 from programs.languages.c_family import SHADING
-from programs.languages.spelling import Spelling, Language, spell, words
+from programs.languages.spelling import Language, Spelling, spell, words
 
 _FUNCTIONS = spell(
     SHADING

@@ -1,1 +1,1 @@
-"""Source code of a program: names, statements, expressions and lines."""
+"""Printing: the source code of a function, its names, statements, expressions and lines."""

@@ -1,4 +1,4 @@
-"""Writing the values of a program as expressions of a language."""
+"""Writing the values of a program as expressions in a language."""
 
 import re
 from collections.abc import Mapping
@@ -9,9 +9,10 @@ from programs.languages.spelling import Precedence, Spelling
 from programs.printing.line_breaking import Break, Tokens, nested, on_one_line
 from programs.program import Operand, Program, is_value
 
-# Operations that every language here writes alike, unless its language says otherwise: the sign, how
-# tightly it binds, and how tightly its operands must bind to stand without parentheses. Comparisons
-# and logic never lean on precedence: there the languages differ.
+# Operators that all languages share, unless a language has its own spelling: the sign, its
+# precedence, and the least precedence with which the left and the right operand need no
+# parentheses. Operands of comparisons and logic get more parentheses than a language needs, because
+# the languages differ in the precedence of these operators.
 _INFIX = {
     "add": ("+", Precedence.SUM, Precedence.SUM, Precedence.PRODUCT),
     "sub": ("-", Precedence.SUM, Precedence.SUM, Precedence.PRODUCT),
@@ -27,30 +28,29 @@ _INFIX = {
     "or": ("||", Precedence.LOGIC, Precedence.EQUALITY, Precedence.EQUALITY),
 }
 _PREFIX = {"neg": "-", "not": "!"}
-
-
-# A constant of more digits than this is a fitted one: it goes into the pool, if there is one.
-_SHORT = 4
+# A constant with more digits than this was fitted, and goes into the pool if there is one.
+_MAX_DIGITS_INLINE = 4
 
 
 @dataclass(frozen=True)
 class ConstantPool:
-    """The constants that stand in an array at the head of a function, in order."""
+    """The constants that a function declares in an array at the start of its body, in order."""
 
     name: str
     places: dict[float, str] = field(default_factory=dict)
 
     def place(self, constant: float) -> str:
-        """Write the reference to a constant, which joins the pool if it is new."""
+        """Return the reference to a constant, which is added to the pool if it is new."""
         return self.places.setdefault(constant, f"{self.name}[{len(self.places)}]")
 
 
 @dataclass(frozen=True)
 class WritingContext:
-    """What is needed to write a value: its program, its language, and the names given so far.
+    """What is needed to write a value as code.
 
-    `names` holds the values that have a name. `pool`, where there is one, takes up the constants
-    of many digits in the order in which they are first written.
+    `names` maps each input, and each value that has a statement of its own, to its name. `pool`
+    collects the constants of many digits in the order in which they are first written; if it is
+    None, they are written in place.
     """
 
     program: Program
@@ -61,9 +61,9 @@ class WritingContext:
 
 
 def spelling(language: Language, precision: str, operation: str) -> Spelling | None:
-    """Find how a language spells an operation; None for those that are written alike everywhere.
+    """Return a language's own spelling of an operation; None for an operator that all share.
 
-    Raises ValueError for an operation that the language does not have at that precision.
+    Raises ValueError for an operation that the language does not have in that precision.
     """
     functions = language.functions[precision]
     if operation in functions:
@@ -78,17 +78,17 @@ def spelling(language: Language, precision: str, operation: str) -> Spelling | N
 
 
 def expression(context: WritingContext, operand: Operand) -> Tokens:
-    """Write a value: its name where it has one, else the expression that computes it."""
+    """Write a value: its name if it has one, else the expression that computes it."""
     return _write(context, operand)[0]
 
 
 def computation(context: WritingContext, value: int) -> Tokens:
-    """Write the expression that computes a step's value, even where it has a name."""
+    """Write the expression that computes a value, even if the value has a name."""
     return _compute(context, value)[0]
 
 
 def literal(context: WritingContext, value: float) -> str:
-    """Write a constant in the language and precision; raises ValueError when it has no literal."""
+    """Write a constant as a literal; raises ValueError if it is out of the precision's range."""
     try:
         digits = shortest_decimal(value, context.precision)
     except ValueError as error:
@@ -98,7 +98,7 @@ def literal(context: WritingContext, value: float) -> str:
 
 def _write(context: WritingContext, operand: Operand) -> tuple[Tokens, int]:
     if not is_value(operand):
-        if context.pool is not None and len(re.sub(r"\D", "", repr(operand))) > _SHORT:
+        if context.pool is not None and len(re.sub(r"\D", "", repr(operand))) > _MAX_DIGITS_INLINE:
             return [context.pool.place(operand)], Precedence.ATOM
         text = literal(context, operand)
         return [text], Precedence.SIGN if text.startswith("-") else Precedence.ATOM
@@ -113,7 +113,7 @@ def _compute(context: WritingContext, value: int) -> tuple[Tokens, int]:
     if how is not None:
         return _from_template(context, how, step.operands), how.precedence
     if step.operation in _PREFIX:
-        tokens = _bound(context, step.operands[0], Precedence.SIGN)
+        tokens = _operand(context, step.operands[0], Precedence.SIGN)
         if on_one_line(tokens).startswith(_PREFIX[step.operation]):
             tokens = ["(", *nested(tokens), ")"]
         return [_PREFIX[step.operation], *tokens], Precedence.SIGN
@@ -124,23 +124,23 @@ def _infix(
     context: WritingContext, operation: str, operands: tuple[Operand, ...]
 ) -> tuple[Tokens, int]:
     sign, precedence, left_precedence, right_precedence = _INFIX[operation]
-    before = _bound(context, operands[0], left_precedence, chain=left_precedence == precedence)
-    after = _bound(context, operands[1], right_precedence)
+    before = _operand(context, operands[0], left_precedence, chain=left_precedence == precedence)
+    after = _operand(context, operands[1], right_precedence)
     first = after[0]
     if isinstance(first, str) and first.startswith("-"):
         if operation in ("add", "sub"):
-            # x + (−c)·y is x − c·y to the last bit, and better to read.
+            # x + (−c)·y and x − c·y are equal to the last bit; the second reads better.
             sign, after = ("-" if sign == "+" else "+"), [first[1:], *after[1:]]
         else:
             after = ["(", *nested(after), ")"]
     return [*before, f" {sign}", Break(), *nested(after)], precedence
 
 
-def _bound(context: WritingContext, operand: Operand, least: int, chain: bool = False) -> Tokens:
-    """Write an operand, in parentheses when it binds less tightly than its place asks for.
+def _operand(context: WritingContext, operand: Operand, least: int, chain: bool = False) -> Tokens:
+    """Write an operand, in parentheses if its precedence is below `least`.
 
-    In a `chain` (a + b + c) an operand of the same precedence is the chain's beginning: its breaks
-    are as welcome as the next one.
+    In a `chain` such as a + b + c, a left operand of the same precedence is the first part of the
+    chain. Its places to break are then not nested deeper than the following ones.
     """
     tokens, precedence = _write(context, operand)
     if precedence < least:
@@ -149,7 +149,7 @@ def _bound(context: WritingContext, operand: Operand, least: int, chain: bool = 
 
 
 def _from_template(context: WritingContext, how: Spelling, operands: tuple[Operand, ...]) -> Tokens:
-    # Two constants to select from say no type by themselves.
+    # Two constants to select from do not show the type of the result.
     untyped = len(operands) == 3 and not any(is_value(operand) for operand in operands[1:])
     parts = [part for part in re.split(r"(\{\d\}|, )", how.template) if part]
     tokens: Tokens = []
@@ -165,14 +165,14 @@ def _from_template(context: WritingContext, how: Spelling, operands: tuple[Opera
             if untyped and not is_value(operand):
                 tokens += typed_expression(context, operand)
             else:
-                tokens += nested(_bound(context, operand, least))
+                tokens += nested(_operand(context, operand, least))
         else:
             tokens.append(part)
     return tokens
 
 
 def typed_expression(context: WritingContext, operand: Operand) -> Tokens:
-    """Write a value that nothing around it gives a type: a bare result."""
+    """Write a value where its surroundings do not show its type, such as a returned constant."""
     tokens = expression(context, operand)
     if is_value(operand):
         return tokens

@@ -1,4 +1,4 @@
-"""Names for the intermediate values of printed code: the author's, or ones that say what it is."""
+"""Names of the intermediate values in printed code, and text that is safe in its comments."""
 
 import re
 import unicodedata
@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 from programs.program import Step
 
-# Signs that have no ASCII of their own, beside the Greek letters, which go by their names.
+# Replacements for characters that are not ASCII; Greek letters are replaced by their names.
 _SIGNS = str.maketrans(
     {
         "·": "*", "×": "x", "−": "-", "–": "-", "—": "-", "±": "+-", "½": "1/2", "≈": "~",
@@ -17,9 +17,9 @@ _SIGNS = str.maketrans(
 
 
 def ascii_text(text: str) -> str:
-    """Write text in printable ASCII: not every shader compiler reads more, even in comments."""
+    """Write text in printable ASCII; some shader compilers read nothing else, even in comments."""
     plain = text.translate(_SIGNS)
-    # θf is theta_f, not thetaf.
+    # θf becomes theta_f, not thetaf.
     plain = re.sub(r"([\u0370-\u03ff])(?=[A-Za-z])", r"\1_", plain)
     return "".join(map(_ascii, plain))
 
@@ -35,20 +35,20 @@ def _ascii(character: str) -> str:
     _, greek, letter = unicodedata.name(character, "").partition("GREEK CAPITAL LETTER ")
     if greek:
         return letter.replace("LAMDA", "LAMBDA").capitalize()
-    # What is left of ö is o, of ₀ is 0 and of … is ...
+    # ö becomes o, ₀ becomes 0 and … becomes ...
     plain = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode("ascii")
     raised = unicodedata.decomposition(character).startswith("<super>")
     return f"^{plain}" if raised else plain or "?"
 
 
 def as_identifier(text: str) -> str:
-    """Make an identifier of a name: ASCII, no underscore in front, none doubled; may be empty."""
+    """Turn text into an ASCII identifier, which may be empty: no leading or double underscores."""
     word = re.sub(r"\W", "_", ascii_text(text).replace("^", ""))
     return re.sub(r"__+", "_", word).strip("_").lstrip("0123456789")
 
 
 def free_name(wanted: str, taken: Collection[str]) -> str:
-    """Give the wanted name, or the first of wanted_2, wanted_3, … that is not taken."""
+    """Return the wanted name, or the first of wanted_2, wanted_3, … that is not taken."""
     if wanted not in taken:
         return wanted
     stem = re.sub(r"_\d+$", "", wanted)
@@ -58,7 +58,7 @@ def free_name(wanted: str, taken: Collection[str]) -> str:
     return f"{stem}_{number}"
 
 
-# operation -> what stands before the operand's name
+# Operation -> prefix of the operand's name
 _PREFIXES = {
     "abs": "abs",
     "acos": "acos",
@@ -80,15 +80,15 @@ _PREFIXES = {
 }
 
 
-# operation -> what is said of an operand that is bounded by a constant
+# Operation with a constant operand -> suffix of the other operand's name
 _BOUNDS = {"min": "AtMost", "max": "AtLeast"}
 
 
 def descriptive_name(step: Step, operand_names: tuple[str | None, ...]) -> str | None:
     """Name the result of a step after its operands: alpha2, b3, sinThetaF, oneMinusAlpha, ….
 
-    Arguments: `step`; `operand_names`, an identifier for each operand that has one, else None.
-    Returns an identifier, or None where none suggests itself.
+    Arguments: `operand_names`, an identifier for each operand that has one, else None. Returns an
+    identifier, or None if no name suggests itself.
     """
     names = operand_names
     if step.operation == "mul" and names[0] and names[1]:
@@ -112,7 +112,7 @@ def _product(left: str, right: str) -> str | None:
 
 
 def _power(name: str) -> tuple[str, int]:
-    # b3 is the third power of b, as the field writes it; a name like e1x has none.
+    # b3 is the third power of b. A name without a last digit from 2 to 9 is a first power.
     found = re.fullmatch(r"(.*[A-Za-z])([2-9])", name)
     return (found[1], int(found[2])) if found else (name, 1)
 

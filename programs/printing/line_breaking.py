@@ -1,4 +1,4 @@
-"""Laying out expressions on lines of a readable length."""
+"""Breaking expressions and comments into lines of at most WIDTH characters."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,20 +9,21 @@ INDENT = "    "
 
 @dataclass(frozen=True)
 class Break:
-    """A place where a line may be broken; between pieces that stay on a line it is a space.
+    """A place where a line may be broken; if it is not broken there, it is a space.
 
-    The outermost places have depth 0; the nested, the later a line is broken there.
+    `depth` says how deeply the place is nested in the expression. Lines are broken first at the
+    places of least depth.
     """
 
     depth: int = 0
 
 
-# What an expression is made of: words that stay together, and places to break.
+# A piece of code: texts that are never divided, and places where a line may be broken.
 Tokens = list[str | Break]
 
 
 def nested(tokens: Sequence[str | Break], levels: int = 1) -> Tokens:
-    """Put an expression inside another one: its places to break become less welcome."""
+    """Nest an expression in another one: its places to break become `levels` deeper."""
     return [Break(t.depth + levels) if isinstance(t, Break) else t for t in tokens]
 
 
@@ -34,11 +35,11 @@ def on_one_line(tokens: Sequence[str | Break]) -> str:
 def break_lines(
     tokens: Sequence[str | Break], indent: str, following: str | None = None
 ) -> list[str]:
-    """Write a statement on as few lines as its length asks for.
+    """Write a statement on as few lines as possible.
 
-    Arguments: `tokens` of the whole statement; `indent` of its first line; `following`, of the
-    others, one step nested by default. Returns the lines, none longer than WIDTH unless a single
-    word is.
+    Arguments: `tokens`, the whole statement; `indent`, the indentation of the first line;
+    `following`, that of the other lines, by default one level deeper. Returns the lines. None is
+    longer than WIDTH, unless a single text is.
     """
     if len(indent) + len(on_one_line(tokens)) <= WIDTH:
         return [indent + on_one_line(tokens)]
@@ -48,7 +49,7 @@ def break_lines(
 
 
 def wrap_words(text: str, first: str, following: str) -> list[str]:
-    """Wrap running text: `first` begins the first line, `following` every other one."""
+    """Wrap prose into lines: `first` starts the first line, `following` starts each other one."""
     lines = [first]
     for word in text.split():
         begun = lines[-1] in (first, following)
@@ -62,10 +63,11 @@ def wrap_words(text: str, first: str, following: str) -> list[str]:
 
 
 def _fill(lines: list[str], tokens: Tokens, indent: str, after_break: bool) -> None:
-    """Append tokens to the last of the lines, beginning a new one where they do not fit.
+    """Append tokens to the last of `lines`, and start new lines where they do not fit.
 
-    What fits on a line of its own stays together; what does not is filled in where it stands,
-    however deep its parentheses. `after_break` says that a line may begin with the first token.
+    The tokens are split at the places of least depth. A piece that fits on a line of its own stays
+    together; a longer one is split in the same way. `after_break` says whether a new line may start
+    before the first token.
     """
     depths = [token.depth for token in tokens if isinstance(token, Break)]
     for piece in _split(tokens, min(depths)) if depths else [tokens]:

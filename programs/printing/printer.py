@@ -1,4 +1,4 @@
-"""Shader code from JAX functions: one expression, printed in any of the targets."""
+"""Printing functions as source code: any JAX function of scalars, in any of the languages."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from programs.printing.expression import (
     typed_expression,
 )
 from programs.printing.identifiers import ascii_text, free_name
-from programs.printing.line_breaking import INDENT, Break, Tokens, nested, break_lines, wrap_words
+from programs.printing.line_breaking import INDENT, Break, Tokens, break_lines, nested, wrap_words
 from programs.printing.statement_choice import choose_statements
 from programs.tracing.tracer import trace
 
@@ -28,16 +28,16 @@ def write_source(
     constants: str = "inline",
     header: Mapping[str, str] | None = None,
 ) -> str:
-    """Write functions as source code of a language, ready to paste.
+    """Write functions as source code that can be pasted into a shader.
 
-    Arguments: `functions`, one or several; `language`, a key of LANGUAGES or a language; `precision`,
-    "half", "float" or "double"; `constants`, "inline" or in a "table" at the head of each body;
-    `header`, labels and texts for the comment that the source begins with, in order. Returns the
-    source; the same call gives the same bytes. Raises ValueError for an unknown language, a
-    precision that it has not, a name that it does not allow, an operation that it cannot express,
-    a constant out of range, or a program too long for it.
+    Arguments: `functions`, one or several; `language`, a key of LANGUAGES or a `Language`;
+    `precision`, a key of PRECISIONS; `constants`, "inline", or "table" for an array at the start of
+    each body; `header`, labels and texts for a comment at the start of the source, in order.
+    Returns the source; the same call returns the same bytes. Raises ValueError for an unknown
+    language, a precision that it does not have, a name that it does not allow, an operation that it
+    cannot express, a constant out of range, and a program that is too long for it.
     """
-    spelled = language(language) if isinstance(language, str) else language
+    spelled = find_language(language) if isinstance(language, str) else language
     chosen = [functions] if isinstance(functions, Function) else list(functions)
     if precision not in spelled.types:
         raise ValueError(
@@ -90,8 +90,8 @@ def _function(
     lines = _function_comment(function, language)
     lines += break_lines(_signature(function, language, kind), "")
     lines += [language.body_opening] if language.body_opening is not None else []
-    lines += _receive(function, language, kind)
-    lines += _write_pool(context, pool) if pool is not None and pool.places else []
+    lines += _convert_arguments(function, language, kind)
+    lines += _pool_declaration(context, pool) if pool is not None and pool.places else []
     lines += body
     return lines + ([language.body_closing] if language.body_closing is not None else [])
 
@@ -145,7 +145,7 @@ def _argument(language: Language, parameter: Parameter, kind: str) -> str:
     return template.format(type=kind, name=parameter.name, size=parameter.size)
 
 
-def _receive(function: Function, language: Language, kind: str) -> list[str]:
+def _convert_arguments(function: Function, language: Language, kind: str) -> list[str]:
     lines = []
     for parameter in function.parameters:
         template = (
@@ -156,7 +156,7 @@ def _receive(function: Function, language: Language, kind: str) -> list[str]:
     return lines
 
 
-def _write_pool(context: WritingContext, pool: ConstantPool) -> list[str]:
+def _pool_declaration(context: WritingContext, pool: ConstantPool) -> list[str]:
     language = context.language
     parts = {"type": language.types[context.precision], "name": pool.name}
     tokens: Tokens = []
@@ -181,7 +181,7 @@ def _function_comment(function: Function, language: Language) -> list[str]:
     domains = []
     for parameter in function.parameters:
         if parameter.size is not None:
-            # Another function's result: its domain is a rough one, of samples.
+            # An array holds another function's results; its domain is a rough estimate.
             continue
         low, high = (f"{bound:.6g}" for bound in parameter.domain)
         unit = "" if parameter.unit == "1" else f" {parameter.unit}"
@@ -191,7 +191,7 @@ def _function_comment(function: Function, language: Language) -> list[str]:
 
 
 def _comment(language: Language, text: str) -> list[str]:
-    # A backslash at the end of a line would take the next line of code into the comment.
+    # A backslash at the end of a line would make the next line of code part of the comment.
     safe = ascii_text(text).replace("\\", "/")
     return wrap_words(safe, f"{language.comment} ", f"{language.comment}   ")
 
@@ -199,7 +199,11 @@ def _comment(language: Language, text: str) -> list[str]:
 def _taken_names(
     language: Language, precision: str, function: Function, functions: Sequence[str]
 ) -> set[str]:
-    """Collect the names that no local may have; refuse the user's names that are not allowed."""
+    """Collect the names that local variables cannot have.
+
+    Raises ValueError for a name of the function, its parameters or its result that the language
+    does not allow.
+    """
     called = {
         word
         for how in language.functions[precision].values()
@@ -212,8 +216,8 @@ def _taken_names(
         unfit = name in language.reserved or name in called
         if unfit or "__" in name or name.startswith(("_", "gl_")):
             raise ValueError(
-                f"name {name!r} cannot be used in {language.name}; allowed: identifiers that are no "
-                "reserved word or function, without '_' in front, '__' or 'gl_'"
+                f"name {name!r} cannot be used in {language.name}; allowed: identifiers that are "
+                "no reserved word or function, without '_' in front, '__' or 'gl_'"
             )
     for name in own:
         if name in functions:

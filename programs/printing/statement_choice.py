@@ -1,4 +1,4 @@
-"""Which values of a program get a statement of their own, and what they are called."""
+"""Choosing which values of a program get a statement of their own, and their names."""
 
 from collections import Counter
 from collections.abc import Collection
@@ -9,17 +9,17 @@ from programs.printing.expression import spelling
 from programs.printing.identifiers import as_identifier, descriptive_name, free_name
 from programs.program import Operand, Program, is_value
 
-# The longest expression that is still read at a glance, in operations.
-LONGEST = 48
-# The most calls that are read inside each other.
-DEEPEST = 4
-# The author's name for a value that is used once is kept from this many operations on.
-WORTH_A_NAME = 3
+# The largest number of operations in one expression: a longer one would be hard to read.
+MAX_OPERATIONS = 48
+# The largest number of calls that are nested in each other.
+MAX_NESTED_CALLS = 4
+# A value that is used once keeps its author's name if it takes at least this many operations.
+MIN_OPERATIONS_TO_NAME = 3
 
 
 @dataclass(frozen=True)
 class Statements:
-    """The values that are written as statements, in order, and the names of all named values."""
+    """The values that have a statement, in order; and the names of these values and the inputs."""
 
     values: tuple[int, ...]
     names: dict[int, str]
@@ -32,15 +32,17 @@ def choose_statements(
     precision: str,
     taken: Collection[str],
 ) -> Statements:
-    """Decide which values are named: those used twice, those too long to stand inside another.
+    """Choose the values that get a statement and a name.
 
-    Arguments: `input_texts`, how each input is written (`alpha`, `c[0]`); `taken`, names that are
-    not free. Returns the statements. Raises ValueError for an operation that the language lacks.
+    They are the values that are used more than once, those whose expression would be too long, and
+    those that the function's author named. Arguments: `input_texts`, how each input is written
+    (`alpha`, `c[0]`); `taken`, names that cannot be used. Returns the statements. Raises ValueError
+    for an operation that the language does not have.
     """
     first = len(program.inputs)
     uses = Counter(o for step in program.steps for o in step.operands if is_value(o))
     uses.update(o for o in program.outputs if is_value(o))
-    repeated = _repeated(program, language, precision)
+    repeated = _written_repeatedly(program, language, precision)
     names = dict(enumerate(input_texts))
     used = set(taken)
     sizes: dict[int, int] = {}
@@ -52,11 +54,15 @@ def choose_statements(
         is_call = spelling(language, precision, step.operation) is not None
         depths[value] = depth = is_call + max((depths[o] for o in inner), default=0)
         is_output = any(is_value(o) and o == value for o in program.outputs)
-        # A sign before a name costs nothing and says more than another name.
+        # −x costs nothing, and reads better than a new name.
         bare_sign = step.operation == "neg" and size == 1
         selection = step.operation in ("min", "max", "select")
-        authored = step.hint is not None and not is_output and (selection or size >= WORTH_A_NAME)
-        too_much = size > LONGEST or depth > DEEPEST
+        authored = (
+            step.hint is not None
+            and not is_output
+            and (selection or size >= MIN_OPERATIONS_TO_NAME)
+        )
+        too_much = size > MAX_OPERATIONS or depth > MAX_NESTED_CALLS
         if value in repeated or too_much or authored or (uses[value] > 1 and not bare_sign):
             wanted = _wanted_name(program, value, names) or repeated.get(value) or "t"
             names[value] = free_name(wanted, used)
@@ -65,10 +71,12 @@ def choose_statements(
     return Statements(tuple(chosen), names)
 
 
-def _repeated(program: Program, language: Language, precision: str) -> dict[int, str | None]:
-    """Find the values that are written more than once where they are used once, and name them.
+def _written_repeatedly(
+    program: Program, language: Language, precision: str
+) -> dict[int, str | None]:
+    """Find the values that the spelling of an operation writes more than once, with their names.
 
-    (A minimum that is spelled as a comparison writes its operands twice.)
+    For example, a minimum that is spelled as a comparison writes each operand twice.
     """
     found: dict[int, str | None] = {}
     for step in program.steps:
@@ -85,7 +93,7 @@ def _wanted_name(program: Program, value: int, names: dict[int, str]) -> str | N
     step = program.steps[value - len(program.inputs)]
     hint = as_identifier(step.hint or "")
     if hint in program.inputs and step.operation in ("min", "max"):
-        # alpha = clip(alpha, …): an argument and its clamped value need two names.
+        # After alpha = clip(alpha, …), the argument and the clamped value need different names.
         return f"{hint}Clamped"
     return hint or _description(program, value, names)
 
@@ -98,7 +106,7 @@ def _description(program: Program, value: int, names: dict[int, str]) -> str | N
             return None
         if operand in names:
             return as_identifier(names[operand])
-        # b·b has no name where b·b·b is all that it is used for, but it is b2 for all that.
+        # If only b·b·b uses b·b, then b·b has no statement. The name b3 is still made of b2 and b.
         inner = program.steps[operand - len(program.inputs)]
         return _description(program, operand, names) if inner.operation == "mul" else None
 

@@ -1,4 +1,4 @@
-"""The statements that call a function for one row of numbers, in languages that look like C."""
+"""Statements that call a function for one row of numbers, in languages that look like C."""
 
 from collections.abc import Callable
 from textwrap import indent
@@ -18,12 +18,13 @@ def call_statements(
     array: str = "{real} {name}[{size}];",
     given: str = "shadefit_value",
 ) -> str:
-    """Write what takes a row apart into arguments, calls with them, and stores the results.
+    """Write statements that split a row into arguments, call the function and store the results.
 
-    Arguments: `function`; `real`, the number type's spelling; `number`, the expression of a column
-    of the row; `store`, the statement that stores a result, which is `shadefit_value[cell]` (None:
-    they are left there); `depth`, spaces of indentation; `scalar` and `array`, how variables are
-    declared; `given`, how the array of results is given to the function. Returns lines of code.
+    Arguments: `function`; `real`, the type of the numbers; `number(column)`, the expression for one
+    number of the row; `store(index)`, the statement that stores the result
+    `shadefit_value[index]`, or None to leave the results in that array; `depth`, spaces of
+    indentation; `scalar` and `array`, templates of declarations of variables; `given`, the
+    expression that passes the array of results to the function. Returns lines of code.
     """
     lines, arguments, column = [], [], 0
     for index, parameter in enumerate(function.parameters):

@@ -1,4 +1,7 @@
-"""CUDA with nvcc: both halves are compiled, the host's is run; without nvcc, g++ and a shim."""
+"""CUDA: nvcc compiles the code for device and host, and the host's code is run.
+
+Without nvcc, g++ compiles it with a header that defines CUDA's keywords.
+"""
 
 from functools import cache
 from pathlib import Path
@@ -7,6 +10,7 @@ import numpy as np
 
 from programs.functions import Function, input_names
 from programs.toolchains.calling import call_statements
+from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.native import (
     STRICT,
     evaluate_program,
@@ -14,14 +18,13 @@ from programs.toolchains.native import (
     values_from,
 )
 from programs.toolchains.process import (
-    missing_command,
+    command_path,
     execute,
     first_line,
+    missing_command,
     packaged_file,
-    command_path,
     workspace,
 )
-from programs.toolchains.interface import run_failure, compile_failure, result_count
 
 NOTE = (
     "no GPU here: with nvcc the device code is compiled to machine code but only the host's half "
@@ -31,12 +34,12 @@ NOTE = (
 
 _REAL = {"half": "__half", "float": "float", "double": "double"}
 _SHIM = Path(__file__).with_name("shims") / "cuda.h"
-# The oldest processor that the compiler still knows: its code is checked down to the last step.
+# The oldest GPU that the compiler supports; device code is compiled to its machine code.
 _MACHINE = "sm_75"
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     reason = missing_command("g++", "g++")
     if reason is None and precision == "half" and _compiler() is None:
         reason = "nvcc, which brings __half, is not here (PyPI: nvidia-cuda-nvcc)"
@@ -44,7 +47,7 @@ def missing_reason(precision: str) -> str | None:
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     compiler, real = _compiler(), _REAL[precision]
     if compiler is None:
         shim = ("g++", "-std=c++17", *STRICT, "-include", _SHIM)
@@ -68,7 +71,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def kernel(function: Function, real: str) -> str:
-    """Write a kernel that calls the function, so that the device's half is compiled to the end."""
+    """Write a kernel that calls the function, so that its device code is compiled completely."""
     count, width = result_count(function), len(input_names(function))
     body = call_statements(
         function,
@@ -86,7 +89,7 @@ __global__ void shadefit_kernel(const {real}* shadefit_in, {real}* shadefit_out)
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     host = first_line("g++", "--version")
     compiler = _compiler()
     if compiler is None:
@@ -104,7 +107,7 @@ def _compiler() -> Path | None:
 
 
 def _library_flags(compiler: Path) -> tuple[str, ...]:
-    # The wheels lay their libraries where their own compiler does not look.
+    # The compiler from a wheel does not search the folder in which the wheels put the libraries.
     folder = compiler.resolve().parent.parent / "lib"
     return (f"-L{folder}",) if folder.is_dir() else ()
 

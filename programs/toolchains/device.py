@@ -1,7 +1,7 @@
-"""Compute shaders on this machine's Vulkan device, which may be a processor (Mesa's lavapipe).
+"""Running compute shaders on a Vulkan device, which may be the processor (Mesa's lavapipe).
 
-The device lives in a worker process (`device_worker.py`), started at first use and kept, since a
-device takes seconds to open; a shader that hangs or breaks it ends the worker, not this process.
+A worker process (`device_worker.py`) opens the device at first use and keeps it open, because that
+takes seconds. A shader that hangs or crashes the driver ends the worker, not this process.
 """
 
 import atexit
@@ -17,10 +17,10 @@ from typing import IO, Any
 import numpy as np
 
 from programs.functions import Function
+from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.process import TIME_LIMIT, ToolchainError, packaged_file, quiet_environment
-from programs.toolchains.interface import run_failure, compile_failure, result_count
 
-# What the optional number types need; float needs nothing.
+# Precision -> the feature of the device that it needs; float needs none.
 FEATURES = {"half": "shader-f16", "double": "shader-f64"}
 
 
@@ -37,7 +37,7 @@ _failures: list[str] = []
 
 
 def missing_reason(precision: str) -> str | None:
-    """None when a Vulkan device can compute in a precision; else the reason."""
+    """Return None if a Vulkan device can compute in a precision, else the reason."""
     try:
         device = _worker().device
     except ToolchainError as error:
@@ -49,7 +49,7 @@ def missing_reason(precision: str) -> str | None:
 
 
 def versions() -> str:
-    """Name the device and what drives it, for the report."""
+    """Name the device and the library that drives it."""
     try:
         device = _worker().device
     except ToolchainError as error:
@@ -64,12 +64,13 @@ def evaluate(
     inputs: np.ndarray,
     precision: str,
 ) -> np.ndarray:
-    """Run a compute shader over all rows: WGSL text or SPIR-V bytes, entry point `main`.
+    """Run a compute shader on all rows.
 
-    Binding 0 holds the inputs, binding 1 takes the values, both row by row, as double for double
-    and as float otherwise; groups are 64 wide. Arguments: `language`, for error lines; the rest as
-    in `Toolchain.evaluate`. Returns (n, m) float64. Raises ToolchainError when the driver refuses
-    the shader, does not answer in time, or ends.
+    Its entry point is `main`, with groups of 64. Binding 0 is the buffer of the inputs and binding
+    1 that of the values, both row by row; their numbers are doubles in double precision and floats
+    otherwise. Arguments: `language`, its name for error messages; `code`, WGSL text or SPIR-V
+    bytes; the rest as in `Toolchain`. Returns (n, m) float64. Raises ToolchainError when the driver
+    refuses the shader, does not answer in time, or crashes.
     """
     worker = _worker()
     kind = np.dtype(np.float64 if precision == "double" else np.float32)
@@ -100,7 +101,7 @@ def _worker() -> _Worker:
     try:
         _workers.append(_start())
     except ToolchainError as error:
-        # A device that did not open once is not tried again for every language.
+        # Remember the failure: opening is not tried again for every language.
         _failures.append(error.summary)
         raise
     return _workers[-1]
@@ -133,7 +134,7 @@ def _start() -> _Worker:
 
 
 def _end(worker: _Worker) -> str:
-    """Stop a worker; give what it printed."""
+    """End a worker and return what it printed."""
     if worker in _workers:
         _workers.remove(worker)
     worker.connection.close()

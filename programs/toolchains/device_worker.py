@@ -1,8 +1,8 @@
-"""A process of its own that runs compute shaders; started by `device.py`, run as a file.
+"""A worker process that runs compute shaders; `device.py` starts it as a file.
 
-It talks over the connection whose descriptor is its argument: a request in, a reply out, until the
-other end closes. Graphics drivers print, start threads and, at worst, end the process: all that
-stays here. It imports nothing of this project, so that it starts quickly.
+Its argument is the file descriptor of a connection. It answers one request after the other until
+the other end closes. Graphics drivers print, start threads and may crash; all of that stays in this
+process. It imports nothing of this project, so that it starts quickly.
 """
 
 import sys
@@ -11,21 +11,21 @@ from importlib import import_module
 from multiprocessing.connection import Connection
 from typing import Any
 
-# By name, since a checker of types runs where it is not installed.
+# Imported by name, because type checkers run where it is not installed.
 wgpu: Any = import_module("wgpu")
 
 GROUP = 64
-ROWS = 1 << 18  # one dispatch: far below the limits on groups (65535) and on buffer sizes
+ROWS = 1 << 18  # in one dispatch: far below the limits on groups (65535) and on buffer sizes
 
 
 def adapter():
-    """Choose the first Vulkan adapter; None when there is none."""
+    """Return the first Vulkan adapter, or None."""
     found = wgpu.gpu.enumerate_adapters_sync()
     return next((one for one in found if one.info["backend_type"] == "Vulkan"), None)
 
 
 def describe(device) -> dict:
-    """Name the device, its driver, and which of the optional number types it has."""
+    """Describe the device: its name, its driver and its optional number types."""
     found = device.adapter
     return {
         "name": f"{found.info['device']}, {found.info['description']}",
@@ -35,7 +35,7 @@ def describe(device) -> dict:
 
 
 def dispatch(device, code, data: bytes, rows: int, item: int, width: int, count: int) -> bytes:
-    """Run the entry point `main` once a row: `width` numbers of `item` bytes in, `count` out."""
+    """Run the entry point `main` for every row: `width` numbers of `item` bytes in, `count` out."""
     module = device.create_shader_module(code=code)
     pipeline = device.create_compute_pipeline(
         layout="auto", compute={"module": module, "entry_point": "main"}
@@ -44,7 +44,7 @@ def dispatch(device, code, data: bytes, rows: int, item: int, width: int, count:
     parts = []
     for start in range(0, rows, ROWS):
         part = min(ROWS, rows - start)
-        # Every thread has a row of its own: the last group's spare threads repeat the last row.
+        # Every thread needs a row: spare threads of the last group repeat the last row.
         padded = -(-part // GROUP) * GROUP
         block = data[start * width * item : (start + part) * width * item]
         block += block[-width * item :] * (padded - part)
@@ -82,13 +82,13 @@ def main() -> None:
     for request in iter(partial(receive, connection), None):
         try:
             reply = (dispatch(device, *request), None)
-        except Exception as error:  # whatever the driver says goes back as the log
+        except Exception as error:  # the driver's message is sent back as the log
             reply = (None, str(error) or type(error).__name__)
         connection.send(reply)
 
 
 def receive(connection: Connection):
-    """Give the next request, or None when the other end has closed."""
+    """Return the next request, or None when the other end has closed."""
     try:
         return connection.recv()
     except EOFError:

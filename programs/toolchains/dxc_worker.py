@@ -1,8 +1,8 @@
-"""HLSL in, SPIR-V out, by DXC's library; started by `hlsl.py`, run as a file.
+"""A worker process that compiles HLSL to SPIR-V with DXC's library; `hlsl.py` starts it as a file.
 
-Arguments: the library, then the compiler's flags, or `--version`. The source comes on standard
-input, the code goes to standard output, complaints to standard error with status 1. The library's
-interface is COM: objects whose first word points to a table of functions.
+Arguments: the library, then the compiler's flags or `--version`. The source is read from standard
+input, and the code is written to standard output. Errors are written to standard error, with exit
+status 1. The library has a COM interface: the first word of an object points to its function table.
 """
 
 import ctypes
@@ -17,7 +17,7 @@ UTF8 = 65001
 
 
 class Text(ctypes.Structure):
-    """A source: its bytes, their number, their code page."""
+    """A source: its bytes, their number and their code page."""
 
     _fields_ = (
         ("bytes", ctypes.c_char_p),
@@ -27,12 +27,12 @@ class Text(ctypes.Structure):
 
 
 def identifier(uuid: UUID):
-    """Give a UUID as COM lays it out in memory."""
+    """Return a UUID in COM's memory layout."""
     return ctypes.create_string_buffer(uuid.bytes_le, 16)
 
 
 def method(thing: ctypes.c_void_p, slot: int, result, *kinds):
-    """Give the function in a slot of an object's table, bound to the object."""
+    """Return the function in a slot of an object's function table, bound to the object."""
     assert thing.value is not None
     table = ctypes.cast(thing, ctypes.POINTER(ctypes.POINTER(ctypes.c_void_p))).contents
     kind = ctypes.CFUNCTYPE(result, ctypes.c_void_p, *kinds)
@@ -40,13 +40,13 @@ def method(thing: ctypes.c_void_p, slot: int, result, *kinds):
 
 
 def checked(status: int) -> None:
-    """End when a call has failed."""
+    """Exit if a call has failed."""
     if status < 0:
         sys.exit(f"DXC failed with status {status & 0xFFFFFFFF:#x}")
 
 
 def instance(library, interface: UUID) -> ctypes.c_void_p:
-    """Make a compiler and give it by one of its interfaces."""
+    """Make a compiler object and return one of its interfaces."""
     made = ctypes.c_void_p()
     create = library.DxcCreateInstance
     create.restype = ctypes.c_int32
@@ -55,7 +55,7 @@ def instance(library, interface: UUID) -> ctypes.c_void_p:
 
 
 def blob(thing: ctypes.c_void_p) -> bytes:
-    """Give the bytes of a blob; none for a blob that is not there."""
+    """Return the bytes of a blob; none for a null pointer."""
     if not thing.value:
         return b""
     start = method(thing, 3, ctypes.c_void_p)()
@@ -72,7 +72,7 @@ def version(library) -> str:
 
 
 def compiled(library, source: bytes, flags: list[str]) -> tuple[bytes, bytes, bool]:
-    """Compile; give the code, the complaints, and whether it went well."""
+    """Compile, and return the code, the compiler's messages and whether it succeeded."""
     text = Text(source, len(source), UTF8)
     words = (ctypes.c_wchar_p * len(flags))(*flags)
     result = ctypes.c_void_p()

@@ -1,4 +1,4 @@
-"""GLSL with glslang to SPIR-V, run as a compute shader on the Vulkan device."""
+"""GLSL: compiled to SPIR-V by glslang and run as a compute shader on the Vulkan device."""
 
 import re
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from programs.functions import Function
 from programs.toolchains import device
-from programs.toolchains.process import missing_command, execute, first_line, workspace
-from programs.toolchains.shader import STORED, main_body
 from programs.toolchains.interface import compile_failure
+from programs.toolchains.process import execute, first_line, missing_command, workspace
+from programs.toolchains.shader import STORED, main_body
 
 NOTE = (
     "GLSL 4.50; the device's inverse trigonometric functions may be off by 4e-4, its exp, log and "
@@ -20,12 +20,12 @@ _EXTENSION = "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : requi
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     return missing_command("glslangValidator", "glslang-tools") or device.missing_reason(precision)
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     with workspace() as folder:
         (folder / "code.comp").write_text(
             compute_shader(source, function, precision), encoding="utf-8"
@@ -40,7 +40,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def compute_shader(source: str, function: Function, precision: str) -> str:
-    """Write the compute shader around a function; a #version of its own gives way to ours."""
+    """Write the compute shader around a function; a #version line in `source` is replaced."""
     real, stored = _REAL[precision], STORED[precision]
     body = main_body(function, real, stored, "shadefit_in.row", "shadefit_out.row")
     extension = f"{_EXTENSION}\n" if precision == "half" else ""
@@ -59,6 +59,6 @@ void main() {{
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     compiler = first_line("glslangValidator", "--version").removeprefix("Glslang Version: ")
     return f"glslang {compiler}, {device.versions()}"

@@ -1,4 +1,4 @@
-"""HLSL with DXC (or, without it, glslang) to SPIR-V, run on the Vulkan device."""
+"""HLSL: compiled to SPIR-V by DXC, or by glslang without it, and run on the Vulkan device."""
 
 import sys
 from functools import cache
@@ -9,16 +9,16 @@ import numpy as np
 
 from programs.functions import Function
 from programs.toolchains import device
+from programs.toolchains.interface import compile_failure
 from programs.toolchains.process import (
     ToolchainError,
-    missing_command,
     execute,
     first_line,
+    missing_command,
     packaged_file,
     workspace,
 )
 from programs.toolchains.shader import hlsl_shader
-from programs.toolchains.interface import compile_failure
 
 NOTE = (
     "shader model 6.2 with 16-bit types, to SPIR-V, not DXIL; the device's inverse trigonometric "
@@ -31,7 +31,7 @@ _DXC_FLAGS = (*_FLAGS, "-fspv-target-env=vulkan1.2")
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     if _library() is None:
         if precision == "half":
             return "DXC, the compiler with 16-bit types, is not installed (PyPI: compushady-lrtu)"
@@ -42,7 +42,7 @@ def missing_reason(precision: str) -> str | None:
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     text = hlsl_shader(source, function, precision)
     library = _library()
     compiled = _by_glslang if library is None else _by_dxc
@@ -51,7 +51,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     if _library() is None:
         compiler = f"{first_line('glslangValidator', '--version')}"
     else:
@@ -60,12 +60,12 @@ def versions() -> str:
 
 
 def _library() -> Path | None:
-    """Where DXC's library is: a package carries it, of which nothing else is used."""
+    """Return the path of DXC's library, or None; nothing else of the package is used."""
     return packaged_file("compushady", f"backends/libdxcompiler_{machine()}.so")
 
 
 def _dxc(*arguments: str | Path) -> list[str | Path]:
-    # In a process of its own: the library brings an LLVM that must not meet another.
+    # It runs in its own process: its LLVM would conflict with another one in this process.
     script = Path(__file__).with_name("dxc_worker.py")
     return [sys.executable, "-I", script, *arguments]
 

@@ -1,13 +1,13 @@
-"""JavaScript with Node."""
+"""JavaScript, run by Node."""
 
 import json
 
 import numpy as np
 
 from programs.functions import Function
+from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.native import values_from
-from programs.toolchains.process import missing_command, execute, first_line, workspace
-from programs.toolchains.interface import run_failure, compile_failure, result_count
+from programs.toolchains.process import execute, first_line, missing_command, workspace
 
 NOTE = "JavaScript computes in double only."
 
@@ -40,14 +40,14 @@ shadefitNode.writeFileSync("values", new Uint8Array(shadefitOut.buffer));
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     if precision != "double":
         return "JavaScript computes in double only"
     return missing_command("node", "nodejs")
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     widths = json.dumps([parameter.size or 0 for parameter in function.parameters])
     main = _MAIN.format(widths=widths, count=result_count(function), name=function.name)
     failure = run_failure("JavaScript", function, precision)
@@ -58,7 +58,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
             failure=compile_failure("JavaScript", function, precision),
             folder=folder,
         )
-        # One file: a function declared in a script is not seen from another module.
+        # Code and main program are one file: a module does not see the functions of a script.
         (folder / "main.js").write_text(source + main, encoding="utf-8")
         (folder / "inputs").write_bytes(inputs.tobytes())
         execute(["node", "main.js"], failure=failure, folder=folder)
@@ -67,5 +67,5 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     return f"Node {first_line('node', '--version')}"

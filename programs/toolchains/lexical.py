@@ -1,4 +1,4 @@
-"""What a stand-in compiler would let pass, looked for in the text itself."""
+"""Checks of source text for what the language forbids but a substitute compiler accepts."""
 
 import re
 from collections.abc import Iterable
@@ -9,15 +9,15 @@ _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
 def without_comments(source: str) -> str:
-    """Blank out comments, C's and C++'s, keeping every other character's place."""
+    """Replace comments of C and C++ by spaces, so that all other characters keep their places."""
     return _COMMENT.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), source)
 
 
 def refuse(source: str, rules: Iterable[tuple[re.Pattern[str], str]], failure: str) -> None:
-    """Refuse a source that matches a pattern outside its comments.
+    """Refuse source code that matches a pattern outside its comments.
 
-    Arguments: `source`; `rules`, patterns with what is wrong where they match; `failure`, the line
-    that begins the error. Raises ToolchainError with a line for every match.
+    Arguments: `source`; `rules`, pairs of a pattern and the complaint where it matches; `failure`,
+    the first line of the error. Raises ToolchainError with one line for every match.
     """
     text = without_comments(source)
     complaints = [
@@ -30,5 +30,5 @@ def refuse(source: str, rules: Iterable[tuple[re.Pattern[str], str]], failure: s
 
 
 def whole_words(names: Iterable[str]) -> re.Pattern[str]:
-    """Give the pattern that matches any of some words, whole."""
+    """Return the pattern that matches any of these names as a whole word."""
     return re.compile(rf"\b(?:{'|'.join(names)})\b")

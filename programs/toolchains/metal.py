@@ -1,4 +1,4 @@
-"""Metal without Apple's compiler: read as C++ through a header that stands in for metal_stdlib."""
+"""Metal without Apple's compiler: compiled as C++ with a substitute for metal_stdlib."""
 
 import re
 from pathlib import Path
@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 
 from programs.functions import Function
+from programs.toolchains.interface import compile_failure
 from programs.toolchains.lexical import refuse, whole_words
 from programs.toolchains.native import HALF, STRICT, evaluate_program, half_missing
-from programs.toolchains.process import missing_command, first_line
-from programs.toolchains.interface import compile_failure
+from programs.toolchains.process import first_line, missing_command
 
 NOTE = (
     "a shim: Metal has no compiler here, so g++ compiles the code against a stand-in for "
     "metal_stdlib; the values are those of the code, but Metal's own rules are not checked."
 )
 
-# What C++ takes and Metal does not.
+# Patterns that C++ accepts and Metal does not, with the complaint
 _RULES = (
     (whole_words(["double"]), "Metal has no double"),
     (
@@ -28,14 +28,14 @@ _SHIMS = Path(__file__).with_name("shims")
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     if precision == "double":
         return "Metal has no double precision"
     return missing_command("g++", "g++") or half_missing("g++", ".cpp")
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     refuse(source, _RULES, compile_failure("Metal", function, precision))
     compiler = (
         *("g++", "-std=c++17", *STRICT, *HALF),
@@ -49,5 +49,5 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     return f"a shim header on {first_line('g++', '--version')}"

@@ -1,4 +1,7 @@
-"""C, C++ and their kin on this processor: a program around the function, rows in, values out."""
+"""C, C++ and languages read as C++, on this processor.
+
+A main program around the function reads rows of inputs and writes rows of values.
+"""
 
 from collections.abc import Sequence
 from functools import cache
@@ -8,22 +11,22 @@ import numpy as np
 
 from programs.functions import Function, input_names
 from programs.toolchains.calling import call_statements
+from programs.toolchains.interface import Toolchain, compile_failure, result_count, run_failure
 from programs.toolchains.process import (
     ToolchainError,
-    missing_command,
     execute,
     first_line,
+    missing_command,
     workspace,
 )
-from programs.toolchains.interface import Toolchain, run_failure, compile_failure, result_count
 
-# No contraction to fma and no fast-math: every operation is rounded once, as NumPy does it.
-# A float that becomes a double unseen is an error: the code would not be what it says it is.
+# Without contraction to fma and without fast-math, every operation is rounded once, as in NumPy.
+# Implicit conversion of a float to a double is an error: the code would be of another precision.
 STRICT = ("-O2", "-ffp-contract=off", "-Werror=double-promotion")
-# Without this, gcc keeps half precision in float between operations.
+# Without this flag, gcc keeps half-precision values in float between operations.
 HALF = ("-fexcess-precision=16",)
 _REAL = {"half": "_Float16", "float": "float", "double": "double"}
-# 1 + u + u with u half a unit in the last place is 1 when every sum is rounded to half.
+# If u is half a unit in the last place of 1, then 1 + u + u = 1 if both sums are rounded to half.
 HALF_PROBE = """
 int main(void) {
     volatile _Float16 one = 1, u = (_Float16)0.00048828125f;
@@ -34,10 +37,10 @@ int main(void) {
 
 
 def main_program(function: Function, source_file: str, real: str) -> str:
-    """Write the program (C, C++ and kin alike) that maps rows on stdin to values on stdout.
+    """Write the main program, in C and C++, that reads rows from stdin and writes values to stdout.
 
-    Arguments: `function`; `source_file`, the file that holds it, included so that the compiler's
-    line numbers are the file's own; `real`, the number type's spelling.
+    Arguments: `function`; `source_file`, the file with its code, which is included so that the
+    compiler's messages have the line numbers of that file; `real`, the type of its numbers.
     """
     count, width = result_count(function), len(input_names(function))
     body = call_statements(function, real, lambda cell: f"({real})shadefit_row[{cell}]", depth=8)
@@ -66,11 +69,11 @@ def evaluate_program(
     inputs: np.ndarray,
     precision: str,
 ) -> np.ndarray:
-    """Compile a function with a main program around it and run it over all rows.
+    """Compile a function with a main program around it, and run it on all rows.
 
-    Arguments: `language`, for error lines; `compiler`, program and flags, which takes files and
-    `-o`; `suffix` of its source files; `real`, the number type's spelling; the rest as in
-    `Toolchain.evaluate`. Returns (n, m) float64. Raises ToolchainError.
+    Arguments: `language`, its name for error messages; `compiler`, a program and its flags, to
+    which files and `-o` are added; `suffix` of the source files; `real`, the type of the numbers;
+    the rest as in `Toolchain`. Returns (n, m) float64. Raises ToolchainError.
     """
     with workspace() as folder:
         (folder / f"code{suffix}").write_text(source, encoding="utf-8")
@@ -87,7 +90,10 @@ def evaluate_program(
 
 
 def values_from(data: bytes, rows: int, function: Function, failure: str) -> np.ndarray:
-    """Shape the float64 bytes that a program wrote as (rows, results), or say that some lack."""
+    """Read the float64 bytes that a program wrote, as (rows, results).
+
+    Raises ToolchainError, whose message begins with `failure`, for another number of bytes.
+    """
     count = result_count(function)
     if len(data) != 8 * rows * count:
         raise ToolchainError(f"{failure}: {len(data)} bytes came back, not {8 * rows * count}")
@@ -96,7 +102,7 @@ def values_from(data: bytes, rows: int, function: Function, failure: str) -> np.
 
 @cache
 def half_missing(compiler: str, suffix: str) -> str | None:
-    """None when a C or C++ compiler rounds every half-precision operation; else the reason."""
+    """Return None if a C or C++ compiler rounds every half-precision operation, else the reason."""
     with workspace() as folder:
         (folder / f"probe{suffix}").write_text(HALF_PROBE, encoding="utf-8")
         try:
@@ -111,7 +117,7 @@ def half_missing(compiler: str, suffix: str) -> str | None:
     return None
 
 
-def _native(target: str, language: str, compiler: str, standard: str, suffix: str) -> Toolchain:
+def _native(key: str, name: str, compiler: str, standard: str, suffix: str) -> Toolchain:
     def missing_reason(precision: str) -> str | None:
         reason = missing_command(compiler, compiler)
         if reason is None and precision == "half":
@@ -122,17 +128,13 @@ def _native(target: str, language: str, compiler: str, standard: str, suffix: st
         extra = HALF if precision == "half" else ()
         command = (compiler, f"-std={standard}", *STRICT, *extra)
         real = _REAL[precision]
-        return evaluate_program(
-            language, command, suffix, real, source, function, inputs, precision
-        )
+        return evaluate_program(name, command, suffix, real, source, function, inputs, precision)
 
     note = (
         f"{standard.upper()}, -O2, no contraction to fma; half is _Float16, emulated with every "
         "step rounded."
     )
-    return Toolchain(
-        target, missing_reason, evaluate, lambda: first_line(compiler, "--version"), note
-    )
+    return Toolchain(key, missing_reason, evaluate, lambda: first_line(compiler, "--version"), note)
 
 
 C = _native("c", "C", "gcc", "c11", ".c")

@@ -1,7 +1,7 @@
-"""Open Shading Language with Blender's compiler and renderer; without them, read as C++.
+"""Open Shading Language: compiled and rendered by Blender, or compiled as C++ without Blender.
 
-Blender as a Python module (bpy) is large, so it is asked for by itself (`make toolchain-osl`).
-Without it, a header gives C++ OSL's arithmetic.
+Blender as a Python module (bpy) is large, so it has its own command (`make toolchain-osl`). Without
+it, a header gives a C++ compiler OSL's arithmetic.
 """
 
 import re
@@ -13,17 +13,17 @@ import numpy as np
 
 from programs.functions import Function, input_names
 from programs.toolchains.calling import call_statements
+from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.lexical import refuse, whole_words
 from programs.toolchains.native import STRICT, evaluate_program
 from programs.toolchains.process import (
     ToolchainError,
-    missing_command,
     execute,
     first_line,
+    missing_command,
     packaged_file,
     workspace,
 )
-from programs.toolchains.interface import run_failure, compile_failure, result_count
 
 NOTE = (
     "with bpy, OSL's own compiler and Cycles on the processor, whose exp and pow are good to 1e-5 "
@@ -34,9 +34,9 @@ NOTE = (
 
 _SHIM = Path(__file__).with_name("shims") / "osl.h"
 _WORKER = Path(__file__).with_name("osl_worker.py")
-# Blender takes seconds to start, then renders one value in three channels at a time.
+# Seconds. Blender takes long to start, and renders three values of a function at a time.
 _TIME_LIMIT = 180.0
-# What C++ knows and OSL reserves or does not know.
+# Words of C++ that OSL reserves or does not have
 _FOREIGN = (
     *("bool", "char", "class", "const", "constexpr", "double", "enum", "inline", "long", "short"),
     *("signed", "sizeof", "static", "switch", "template", "typedef", "union", "unsigned"),
@@ -46,16 +46,16 @@ _RULES = ((whole_words(_FOREIGN), "no word of OSL"), (_SUFFIXED, "OSL's literals
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     if precision != "float":
         return "OSL computes in float only"
     return None if renderer() else missing_command("g++", "g++")
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     failure = compile_failure("OSL", function, precision)
-    # Newer compilers take a suffix that older ones refuse: here it is refused by all.
+    # Newer OSL compilers accept a suffix that older ones refuse, so it is always refused here.
     refuse(source, _RULES, failure)
     if renderer():
         return _rendered(source, function, inputs, failure)
@@ -64,26 +64,26 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     return renderer() or f"a shim header on {first_line('g++', '--version')}"
 
 
 @cache
 def renderer() -> str | None:
-    """Name Blender and its OSL with their versions, or None where they are not or do not load."""
+    """Return the versions of Blender and its OSL, or None if Blender is absent or does not load."""
     if packaged_file("bpy", "__init__.so") is None:
         return None
     try:
         said = execute([sys.executable, "-I", _WORKER, "--version"], failure="bpy").decode()
     except ToolchainError:
         return None
-    return said.strip().split("\n")[-1]  # Blender speaks first
+    return said.strip().split("\n")[-1]  # Blender prints other lines before it
 
 
 def probe(function: Function, first: int, folder: Path) -> str:
-    """Write the shader that emits three of a function's values, from `first` on, as a colour.
+    """Write the shader that emits three values of a function, from number `first`, as a colour.
 
-    Its row is the pixel that is seen; textures of three columns each hold the inputs of the rows.
+    Each pixel is one row. Textures in `folder`, with three columns each, hold the inputs.
     """
     count, width = result_count(function), len(input_names(function))
     textures = "\n".join(

@@ -1,9 +1,9 @@
-"""OSL compiled and rendered by Blender, in a process of its own; started by `osl.py`.
+"""A worker process that compiles and renders OSL with Blender; `osl.py` starts it as a file.
 
-It runs as a file in the folder that holds its inputs and takes its outputs. Arguments: `--version`;
-or `compile` and the shaders' numbers; or `render`, the numbers of rows and of columns, and the
-shaders' numbers. Every row is a pixel of a plane that a camera looks at straight; its inputs are
-the texels there, its values the light that the plane gives off there.
+It runs in the folder of its input and output files. Arguments: `--version`; or `compile` and the
+shaders' numbers; or `render`, the numbers of rows and of columns, and the shaders' numbers. The
+scene is a plane seen by an orthographic camera, with one pixel for each row. The row's inputs are
+texels at that pixel, and its values are the light that the plane emits there.
 """
 
 import math
@@ -14,18 +14,18 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
 
-# Blender's modules may be built for another NumPy than the one installed, and need none here.
+# Blender's modules may be built for another version of NumPy, and do not need NumPy here.
 sys.modules["numpy"] = cast(ModuleType, None)
-# By name, since a checker of types runs where they are not installed.
+# Imported by name, because type checkers run where they are not installed.
 bpy: Any = import_module("bpy")
 _cycles: Any = import_module("_cycles")
 
 HERE = Path.cwd()
-LEAST = 4  # pixels: Blender renders no smaller picture
+LEAST = 4  # pixels: the width and height of Blender's smallest picture
 
 
 def compile_shaders(numbers: list[str]) -> None:
-    """Compile every shader; end with status 1 when one is refused."""
+    """Compile every shader; exit with status 1 if one is refused."""
     for number in numbers:
         path = HERE / f"probe{number}"
         if not _cycles.osl_compile(f"{path}.osl", f"{path}.oso"):
@@ -33,7 +33,7 @@ def compile_shaders(numbers: list[str]) -> None:
 
 
 def write_textures(rows: int, columns: int, width: int, height: int) -> None:
-    """Write the inputs, three columns a texture, row by row from the lower left corner."""
+    """Write the inputs to textures of three columns each, row by row from the lower left corner."""
     inputs = array("f", (HERE / "inputs").read_bytes())
     for index in range(-(-columns // 3)):
         pixels = array("f", bytes(16 * width * height))
@@ -47,7 +47,7 @@ def write_textures(rows: int, columns: int, width: int, height: int) -> None:
 
 
 def build_scene(width: int, height: int) -> None:
-    """Put a plane of width by height before a camera that sees one unit a pixel."""
+    """Put a plane of this width and height before a camera that sees one unit in each pixel."""
     scene = bpy.context.scene
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
@@ -78,14 +78,14 @@ def build_scene(width: int, height: int) -> None:
     cycles.samples = 1
     cycles.max_bounces = 0
     cycles.use_adaptive_sampling = cycles.use_denoising = False
-    # One sample close to the pixel's centre: none falls on its neighbour.
+    # One sample close to the centre of the pixel, so that none falls on a neighbouring pixel.
     cycles.pixel_filter_type = "BLACKMAN_HARRIS"
     cycles.filter_width = 0.01
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 
 
 def render_shader(number: str, width: int, height: int) -> None:
-    """Render the plane with one shader and write the pixels as they are."""
+    """Render the plane with one shader and write the pixels without any transform."""
     material = bpy.data.materials.new(f"probe{number}")
     if material.node_tree is None:
         material.use_nodes = True
@@ -115,7 +115,7 @@ def render_shader(number: str, width: int, height: int) -> None:
 
 
 def main(words: list[str]) -> None:
-    """Do what the arguments say."""
+    """Do one of the three tasks."""
     if words[0] == "--version":
         osl = "".join(str(part) for part in _cycles.osl_version_string).replace(" ", "")
         print(f"OSL {osl.replace(',', '.')} in Blender {bpy.app.version_string}, Cycles")

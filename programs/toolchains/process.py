@@ -1,4 +1,4 @@
-"""Running other programs: found or missing, within a time limit, in a folder that is removed."""
+"""Running other programs, with a time limit and in temporary folders; and finding them."""
 
 import os
 import shutil
@@ -10,14 +10,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from coefficients.files import unfinished
+from programs.toolchains.temporary import unfinished
 
-# A minute compiles the largest table several times over; what takes longer hangs.
+# Seconds. The largest table compiles in a fraction of it; a tool that takes longer has hung.
 TIME_LIMIT = 60.0
 
 
 class ToolchainError(RuntimeError):
-    """Code that did not compile or did not run: one line, and below it what the tool printed."""
+    """Code did not compile or did not run: `summary` is one line, `log` what the tool printed."""
 
     def __init__(self, summary: str, log: str = ""):
         super().__init__(f"{summary}\n{log.strip()}" if log.strip() else summary)
@@ -27,7 +27,7 @@ class ToolchainError(RuntimeError):
 
 @contextmanager
 def workspace() -> Generator[Path, None, None]:
-    """Give a temporary folder for sources and programs, removed whatever happens."""
+    """Make a temporary folder for sources and programs; it is removed whatever happens."""
     with TemporaryDirectory(prefix="shadefit-") as folder, unfinished(Path(folder)) as path:
         yield path
 
@@ -40,11 +40,12 @@ def execute(
     data: bytes = b"",
     seconds: float = TIME_LIMIT,
 ) -> bytes:
-    """Run a program without a shell and give what it wrote to standard output.
+    """Run a program without a shell and return its standard output.
 
-    Arguments: `command`, program and arguments; `failure`, the line that begins the error when it
-    fails; `folder`, where it runs; `data`, its standard input; `seconds`, its time limit. Raises
-    ToolchainError when it cannot be started, does not end in time, or ends with a status.
+    Arguments: `command`, the program and its arguments; `failure`, the first line of the error if
+    it fails; `folder`, where it runs; `data`, its standard input; `seconds`, its time limit. Raises
+    ToolchainError when it cannot be started, does not end in time, or ends with a status other than
+    zero.
     """
     words = [str(word) for word in command]
     try:
@@ -56,20 +57,20 @@ def execute(
     except OSError as error:
         raise ToolchainError(f"{failure}: {words[0]} does not start", str(error)) from error
     if done.returncode != 0:
-        # Compilers differ in which stream they complain on.
+        # Some compilers print errors to standard output.
         log = (done.stdout + b"\n" + done.stderr).decode("utf-8", "replace")
         raise ToolchainError(f"{failure} (status {done.returncode})", log)
     return done.stdout
 
 
 def command_path(name: str) -> Path | None:
-    """Where a program is on PATH, or None."""
+    """Return the path of a program on PATH, or None."""
     found = shutil.which(name)
     return Path(found) if found else None
 
 
 def packaged_file(package: str, file: str) -> Path | None:
-    """Where an installed Python package holds a file, or None; the package is not imported."""
+    """Return the path of a file in an installed Python package, or None; nothing is imported."""
     try:
         spec = find_spec(package)
     except ModuleNotFoundError:
@@ -85,7 +86,7 @@ def packaged_file(package: str, file: str) -> Path | None:
 
 @cache
 def first_line(*command: str | Path) -> str:
-    """Give the first line that a program prints (of its version, say), or its bare name."""
+    """Return the first line that a program prints, such as its version; its name if it fails."""
     name = Path(command[0]).name
     try:
         done = subprocess.run(
@@ -98,12 +99,15 @@ def first_line(*command: str | Path) -> str:
 
 
 def missing_command(name: str, package: str) -> str | None:
-    """None when a program is on PATH; else a line that says so and what to install."""
+    """Return None if a program is on PATH, else a line that names the Debian package to install."""
     return None if command_path(name) else f"{name} is not on PATH (Debian: {package})"
 
 
 def quiet_environment() -> dict[str, str]:
-    """Give this environment without what makes graphics drivers talk or look for a screen."""
+    """Return the environment variables, changed so that graphics drivers print nothing.
+
+    Without DISPLAY, they do not look for a screen; without XDG_RUNTIME_DIR, they would complain.
+    """
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     environment.setdefault("XDG_RUNTIME_DIR", "/tmp")
     return environment

@@ -1,4 +1,4 @@
-"""Python with NumPy: the code is run in a namespace of its own, in this process."""
+"""Python with NumPy: the code runs in this process, in a namespace of its own."""
 
 import sys
 from typing import Any
@@ -7,19 +7,19 @@ import numpy as np
 
 from programs.functions import Function, group_inputs
 from programs.precision import number_type
+from programs.toolchains.interface import compile_failure, run_failure
 from programs.toolchains.process import ToolchainError
-from programs.toolchains.interface import run_failure, compile_failure
 
 NOTE = "NumPy rounds every operation to the type of its arrays; whole arrays at a time."
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`: NumPy is always here, in every precision."""
+    """See `Toolchain.missing_reason`. NumPy is always installed and has every precision."""
     return None
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`; values of another type than the precision's are refused."""
+    """See `Toolchain.evaluate`. Values whose type is not that of the precision are an error."""
     namespace: dict[str, Any] = {"__name__": "shadefit_exported"}
     kind = number_type(precision)
     arguments = group_inputs(function, [column.astype(kind) for column in inputs.T])
@@ -34,7 +34,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
         raise ToolchainError(compile_failure("Python", function, precision), log)
     failure = run_failure("Python", function, precision)
     try:
-        # Overflow shows in the values; as warnings it would only be said twice.
+        # Overflow shows in the values, so NumPy's warnings are not needed.
         with np.errstate(all="ignore"):
             given = called(*arguments)
         columns = [given] if function.result is None else list(given)
@@ -50,5 +50,5 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     return f"Python {sys.version.split()[0]}, NumPy {np.__version__}"

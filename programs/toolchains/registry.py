@@ -1,4 +1,4 @@
-"""Every language's toolchain by its target's name."""
+"""All toolchains, by the key of their language."""
 
 from types import ModuleType
 
@@ -17,34 +17,30 @@ from programs.toolchains import (
 from programs.toolchains.interface import Toolchain
 
 
-def _assembled(target: str, module: ModuleType) -> Toolchain:
-    return Toolchain(target, module.missing_reason, module.evaluate, module.versions, module.NOTE)
+def _from_module(language: str, module: ModuleType) -> Toolchain:
+    return Toolchain(language, module.missing_reason, module.evaluate, module.versions, module.NOTE)
 
 
 TOOLCHAINS: dict[str, Toolchain] = {
-    chain.target: chain
+    chain.language: chain
     for chain in (
         native.C,
         native.CPP,
-        _assembled("hlsl", hlsl),
-        _assembled("glsl", glsl),
-        _assembled("slang", slang),
-        _assembled("metal", metal),
-        _assembled("wgsl", wgsl),
-        _assembled("osl", osl),
-        _assembled("cuda", cuda),
-        _assembled("python", python),
-        _assembled("javascript", javascript),
+        _from_module("hlsl", hlsl),
+        _from_module("glsl", glsl),
+        _from_module("slang", slang),
+        _from_module("metal", metal),
+        _from_module("wgsl", wgsl),
+        _from_module("osl", osl),
+        _from_module("cuda", cuda),
+        _from_module("python", python),
+        _from_module("javascript", javascript),
     )
 }
 
 
-def toolchain(target: str) -> Toolchain:
-    """Give a language's toolchain.
-
-    Arguments: `target`, a language's name as in the registry of targets. Raises ValueError for a
-    language that has none.
-    """
-    if target not in TOOLCHAINS:
-        raise ValueError(f"target is {target!r}; allowed: {', '.join(TOOLCHAINS)}")
-    return TOOLCHAINS[target]
+def toolchain(language: str) -> Toolchain:
+    """Return the toolchain of a language (a key of LANGUAGES); raises ValueError for others."""
+    if language not in TOOLCHAINS:
+        raise ValueError(f"target is {language!r}; allowed: {', '.join(TOOLCHAINS)}")
+    return TOOLCHAINS[language]

@@ -1,18 +1,18 @@
-"""A compute shader around a function, in the languages that look like C."""
+"""Compute shaders around a function, in languages that look like C."""
 
 from programs.functions import Function, input_names
 from programs.toolchains.calling import call_statements
 from programs.toolchains.interface import result_count
 
-# Halves travel as floats, which hold them exactly, so that no 16-bit storage is needed.
+# Precision -> type in the buffers. Floats hold halves exactly, so no 16-bit storage is needed.
 STORED = {"half": "float", "float": "float", "double": "double"}
 
 
 def main_body(function: Function, real: str, stored: str, inputs: str, outputs: str) -> str:
-    """Write the statements that call a function for row `shadefit_k`.
+    """Write the statements that call a function for row number `shadefit_k`.
 
-    Arguments: `function`; `real` and `stored`, the spellings of the number type computed in and
-    of the one in the buffers; `inputs` and `outputs`, the expressions that name the buffers.
+    Arguments: `function`; `real`, the type that it computes in; `stored`, the type of the numbers
+    in the buffers; `inputs` and `outputs`, the expressions for the buffers.
     """
     count, width = result_count(function), len(input_names(function))
     return call_statements(
@@ -26,7 +26,7 @@ def main_body(function: Function, real: str, stored: str, inputs: str, outputs: 
 
 
 def hlsl_shader(source: str, function: Function, precision: str) -> str:
-    """Write the compute shader around a function in HLSL, which Slang reads as well."""
+    """Write the compute shader around a function in HLSL, which Slang compiles too."""
     stored = STORED[precision]
     body = main_body(function, precision, stored, "shadefit_in", "shadefit_out")
     return f"""{source}

@@ -1,4 +1,4 @@
-"""Slang with slangc to SPIR-V, run as a compute shader on the Vulkan device."""
+"""Slang: compiled to SPIR-V by slangc and run as a compute shader on the Vulkan device."""
 
 from pathlib import Path
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from programs.functions import Function
 from programs.toolchains import device
-from programs.toolchains.process import execute, first_line, command_path, packaged_file, workspace
-from programs.toolchains.shader import hlsl_shader
 from programs.toolchains.interface import compile_failure
+from programs.toolchains.process import command_path, execute, first_line, packaged_file, workspace
+from programs.toolchains.shader import hlsl_shader
 
 NOTE = (
     "slangc -O0 to SPIR-V; the device's inverse trigonometric functions may be off by 4e-4, its "
@@ -17,7 +17,7 @@ NOTE = (
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     if _compiler() is None:
         return (
             "slangc is not on PATH nor in the environment (PyPI: slangtorch, without what it needs)"
@@ -26,14 +26,14 @@ def missing_reason(precision: str) -> str | None:
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     compiler = _compiler()
     assert compiler is not None
     with workspace() as folder:
         (folder / "code.slang").write_text(
             hlsl_shader(source, function, precision), encoding="utf-8"
         )
-        # -O0 because the optimiser of SPIR-V is a library that the package does not carry.
+        # The optimizer of SPIR-V is a library that the package does not contain, hence -O0.
         flags = ("-target", "spirv", "-O0", "-entry", "main", "-stage", "compute")
         execute(
             [compiler, "code.slang", *flags, "-o", "code.spv"],
@@ -45,7 +45,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     compiler = _compiler()
     name = "no slangc" if compiler is None else f"slangc {first_line(compiler, '-v')}"
     return f"{name}, {device.versions()}"

@@ -1,4 +1,4 @@
-"""What a function gives: its evaluations a second, in compiled C and in JAX."""
+"""Measuring a function's throughput: its evaluations per second in compiled C and in JAX."""
 
 import ctypes
 import time
@@ -13,25 +13,25 @@ import numpy as np
 from programs.functions import Function, group_inputs
 from programs.printing.printer import write_source
 from programs.toolchains.calling import call_statements
+from programs.toolchains.interface import compile_failure, result_count
 from programs.toolchains.process import (
     ToolchainError,
-    missing_command,
     execute,
     first_line,
+    missing_command,
     workspace,
 )
-from programs.toolchains.interface import compile_failure, result_count
 
-# sqrtf need not set errno, and no one catches its exceptions: without these two, loops over it are
-# not vectorised, which XLA does with its own.
+# The last two flags say that sqrtf need not set errno or raise floating-point exceptions. Otherwise
+# gcc does not vectorize loops over it, while XLA does.
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math")
 
 
 @dataclass(frozen=True)
 class Throughput:
-    """Evaluations a second in float32: compiled C on one thread, and JAX on as many as it takes.
+    """Evaluations per second in float32: compiled C on one thread, and JAX on any number of threads.
 
-    `difference` is the largest difference between the two in what they gave.
+    `difference` is the largest difference between their results.
     """
 
     compiled: float
@@ -43,18 +43,18 @@ class Throughput:
 
     @property
     def ratio(self) -> float:
-        """How many times as fast the compiled C is as the jitted JAX function."""
+        """The throughput of compiled C divided by that of the jitted JAX function."""
         return self.compiled / self.jax
 
 
 def measure_throughput(
     function: Function, points: int = 1 << 17, rounds: int = 9, flags: tuple[str, ...] = FLAGS
 ) -> Throughput:
-    """Measure the exported C and the jitted JAX function on the same data, turn by turn.
+    """Measure the exported C and the jitted JAX function on the same data, in turn.
 
-    Arguments: `function`; `points`, how many random points of its domain an evaluation takes;
-    `rounds`, how often each is timed (the fastest counts); `flags` for gcc. Returns the figures.
-    Raises ValueError when there is no gcc, or when the code does not compile.
+    Arguments: `function`; `points`, the number of random points of its domain; `rounds`, how often
+    each is timed (the fastest time counts); `flags` for gcc. Returns the measurement. Raises
+    ValueError when gcc is missing and when the code does not compile.
     """
     if points < 1 or rounds < 1:
         raise ValueError(f"points {points} and rounds {rounds}; allowed: at least 1 each")
@@ -64,7 +64,7 @@ def measure_throughput(
     inputs = _random_inputs(function, points)
     with workspace() as folder:
         compiled = _compile(function, folder, flags)
-        # Coefficients are float64 constants: in a float32 world they do not widen the arithmetic.
+        # Coefficients are float64 constants. Without x64, JAX computes in float32 all the same.
         with jax.enable_x64(False):
             batched = jax.jit(jax.vmap(lambda *row: function.call(*group_inputs(function, row))))
             columns = [jnp.asarray(column) for column in inputs]
@@ -93,7 +93,7 @@ def _compile(
 ) -> Callable[[np.ndarray], np.ndarray]:
     source, library = folder / "function.c", folder / "function.so"
     source.write_text(write_source(function, "c") + _driver(function), encoding="utf-8")
-    # The function is to be measured inside the loop, as a renderer would inline it.
+    # The function is inlined into the loop, as a renderer would do.
     inlined = ("-fno-semantic-interposition", "-finline-limit=100000")
     command = ["gcc", *flags, *inlined, "-shared", "-fPIC", source, "-o", library, "-lm"]
     try:
@@ -118,7 +118,7 @@ def _compile(
 
 
 def _driver(function: Function) -> str:
-    """Write the loop over all points: one row of inputs after the other, and so the outputs."""
+    """Write the loop over all points; the array of inputs has one row for each input."""
     body = call_statements(
         function,
         "float",

@@ -1,4 +1,4 @@
-"""WGSL with naga, wgpu's compiler, run as a compute shader on the Vulkan device."""
+"""WGSL: compiled by naga, which is part of wgpu, and run as a compute shader on Vulkan."""
 
 import numpy as np
 
@@ -16,14 +16,14 @@ _REAL = {"half": "f16", "float": "f32"}
 
 
 def missing_reason(precision: str) -> str | None:
-    """As `Toolchain.missing_reason`."""
+    """See `Toolchain.missing_reason`."""
     if precision == "double":
         return "WGSL has no double precision"
     return device.missing_reason(precision)
 
 
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
-    """As `Toolchain.evaluate`."""
+    """See `Toolchain.evaluate`."""
     code = compute_shader(source, function, precision)
     return device.evaluate("WGSL", code, function, inputs, precision)
 
@@ -43,7 +43,8 @@ def compute_shader(source: str, function: Function, precision: str) -> str:
         array="var {name}: array<{real}, {size}>;",
         given="&shadefit_value",
     )
-    # Directives come first, and may be said twice; on the first line, they move no other.
+    # Directives must come first, and may be repeated. On the first line of the source, this one does
+    # not change the line numbers.
     head = "enable f16; " if precision == "half" else ""
     return f"""{head}{source}
 @group(0) @binding(0) var<storage, read> shadefit_in: array<f32>;
@@ -57,5 +58,5 @@ fn main(@builtin(global_invocation_id) shadefit_id: vec3<u32>) {{
 
 
 def versions() -> str:
-    """As `Toolchain.versions`."""
+    """See `Toolchain.versions`."""
     return f"naga, {device.versions()}"

@@ -93,8 +93,9 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
     try:
         return apply_primitive(builder, equation, operands)
     except KeyError:
+        allowed = writable_primitives()
         raise ValueError(
-            f"{primitive!r} in {name} cannot be written as shader code; allowed: {writable_primitives()}"
+            f"{primitive!r} in {name} cannot be written as shader code; allowed: {allowed}"
         ) from None
     except ValueError as error:
         raise ValueError(f"{primitive!r} in {name}: {error}") from error

@@ -1,4 +1,4 @@
-/* Stands in for the CUDA compiler's own names, so that g++ can read scalar CUDA code. */
+/* Defines what the CUDA compiler knows by itself, so that g++ can compile scalar CUDA code. */
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Lets a C++ compiler read scalar OSL code: `float` becomes a class that computes as OSL does.
-// OSL promises that no arithmetic gives inf or nan: what C leaves undefined is 0 or clamped.
+// Lets a C++ compiler compile scalar OSL code: `float` becomes a class that computes as OSL does.
+// In OSL no arithmetic results in inf or nan: where C would, the result is 0 or is clamped.
 #pragma once
 
 #include <cfloat>
@@ -81,6 +81,6 @@ inline real erf(real x) { return std::erf(x.v); }
 
 }  // namespace shadefit
 
-// Only arrays are ever `output` here, and C++ passes those by address anyway.
+// All output arguments here are arrays, which C++ passes by address anyway.
 #define output
 #define float shadefit::real
