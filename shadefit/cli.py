@@ -2,12 +2,24 @@
 
 import os
 import sys
+from collections.abc import Callable
 from importlib.metadata import version
 from typing import Annotated
 
 import typer
 
-from shadefit.commands import code, pictures, tables
+from shadefit.commands.ambient import ambient
+from shadefit.commands.compare import compare
+from shadefit.commands.cost import cost
+from shadefit.commands.evaluate import SETTINGS, evaluate
+from shadefit.commands.export import export
+from shadefit.commands.figures import figures
+from shadefit.commands.list import list_tables
+from shadefit.commands.refit import refit
+from shadefit.commands.render import render
+from shadefit.commands.report import report
+from shadefit.commands.search import search
+from shadefit.commands.verify import verify
 
 app = typer.Typer(
     name="shadefit",
@@ -24,8 +36,43 @@ def _print_version(wanted: bool | None) -> None:
         raise typer.Exit
 
 
-for part in (tables, code, pictures):
-    app.add_typer(part.app)
+def _add(name: str, command: Callable, examples: str, **options) -> None:
+    app.command(name, epilog=examples, **options)(command)
+
+
+_add(
+    "refit",
+    refit,
+    "Examples: shadefit refit r g --out /tmp/tables --grid 33; "
+    "shadefit refit best/q-9; shadefit refit g --norm linf --out /tmp/tables",
+)
+_add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")
+_add("compare", compare, "Example: shadefit compare ps my/table.json --json")
+_add(
+    "evaluate",
+    evaluate,
+    "Examples: shadefit evaluate ps --alpha 0.35 --theta-f 45deg --theta-u 30deg "
+    "--phi 90deg; shadefit evaluate g --density 0.2 --cos-v 0.5",
+    context_settings=SETTINGS,
+)
+_add("list", list_tables, "Example: shadefit list --json")
+_add(
+    "export",
+    export,
+    "Examples: shadefit export published/ps -o ps.json; "
+    "shadefit export exact/ps --to hlsl --precision half",
+)
+_add("verify", verify, "Example: shadefit verify ps exact/ps --to wgsl --precision all")
+_add("cost", cost, "Example: shadefit cost ps --throughput")
+_add("figures", figures, "Example: shadefit figures figure-5 frontier --out /tmp/figures")
+_add(
+    "render",
+    render,
+    "Examples: shadefit render --density 0.1 --tilt 45deg; "
+    "shadefit render cloth --sweep --fibers even --size 160",
+)
+_add("report", report, "Example: shadefit report --out /tmp/report.html")
+_add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
 
 
 @app.callback()

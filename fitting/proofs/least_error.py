@@ -22,7 +22,7 @@ def least_error(
     `exact` (n,). For a quotient N/D of linear functions with D > 0, |N − f·D| ≤ t·D is linear in
     the coefficients: a t that no coefficients satisfy at some of the points is a bound.
     """
-    if not form.has_least_error:
+    if not (form.has_least_error and form.size):
         return None
     some = largest_of(np.abs(errors), ROWS)
     some[:: max(len(points) // ROWS, 1)] = True

@@ -88,7 +88,6 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         stages=(Stage(value),),
         starts=(start, start * 1.3, start * 0.75),
         shape={"decay": decay, "rate": rate, "factor": factor},
-        proofs=Proofs(positive=_unguarded),
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import jax.numpy as jnp
 from jax import Array
 
-from fitting.form import Form, Proofs, Stage
+from fitting.form import Form, Stage
 from fitting.greedy_monomials import greedy_sets
 from fitting.shapes.monomials import Exponents, horner
 from integrals import R
@@ -38,7 +38,7 @@ def monomial_r(
     symbol, z_of = VARIABLES[variable]
     split = len(numerator)
 
-    def positive(c, alpha: Scalar, theta_f: Scalar) -> Array:
+    def denominator_at(c, alpha: Scalar, theta_f: Scalar) -> Array:
         z, cosine = z_of(jnp.asarray(alpha)), jnp.cos(theta_f)
         below = zip(denominator, c[split:], strict=True)
         return horner({(0, 0): 1.0, **dict(below)}, z, cosine * cosine)
@@ -46,7 +46,7 @@ def monomial_r(
     def value(c, alpha: Scalar, theta_f: Scalar) -> Array:
         z, cosine = z_of(jnp.asarray(alpha)), jnp.cos(theta_f)
         above = zip(numerator, c[:split], strict=True)
-        return 0.5 + z * horner(dict(above), z, cosine * cosine) / positive(c, alpha, theta_f)
+        return 0.5 + z * horner(dict(above), z, cosine * cosine) / denominator_at(c, alpha, theta_f)
 
     sets = {"N": numerator, "D": denominator}
     return Form(
@@ -67,7 +67,6 @@ def monomial_r(
             "denominator": [list(each) for each in denominator],
             "least_alpha": least_alpha,
         },
-        proofs=Proofs(positive=positive),
     )
 
 

@@ -1,5 +1,4 @@
-"""The commands' options and help, by what they are about.
+"""The commands of `shadefit`, a file each: options and help, and what is done with them.
 
-The work is in the modules of `shadefit`, which are imported when a command runs: help and
-completion do not wait for JAX.
+What a command works with is imported when it runs, so that help and completion do not wait for JAX.
 """

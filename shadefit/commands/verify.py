@@ -1,27 +1,54 @@
 """`shadefit verify`: exported code compiled, run and compared, a row a language."""
 
-from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from coefficients.shaders import shader
-from coefficients.verify import SLACK, Check, Problem, check, precision_of
-from programs.languages import PRECISIONS, TARGETS, target
-from shadefit.terminal import print_json, print_table, stages
+import typer
+
+from shadefit.commands.options import Json
+from shadefit.completion import complete_language, complete_shader
+
+if TYPE_CHECKING:
+    from programs import Check
 
 
-def run(names: list[str], language: str, precision: str | None, json: bool) -> int:
-    """Verify tables in one language or all; gives the exit status: 1 if any failed, else 0."""
-    languages = list(TARGETS) if language == "all" else [target(language).key]
+def verify(
+    tables: Annotated[
+        list[str],
+        typer.Argument(help="Tables' names or paths, exact/NAME.", autocompletion=complete_shader),
+    ],
+    to: Annotated[
+        str, typer.Option(help="Language, or all.", autocompletion=complete_language)
+    ] = "all",
+    precision: Annotated[
+        Literal["half", "float", "double", "all"] | None,
+        typer.Option(help="By default float (JavaScript: double)."),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Compile and run exported code, and compare it with its form and the exact integral.
+
+    Exit status 1 if any language failed. A compiler that is not here is 'not checked'.
+    """
+    from dataclasses import asdict
+
+    from coefficients.catalogue import resolve
+    from coefficients.exported_code import trial_of
+    from programs import LANGUAGES, check, language
+    from shadefit.terminal import print_json, stages
+
+    languages = list(LANGUAGES) if to == "all" else [language(to).key]
     kinds = _precisions(languages, precision)
     checks: dict[str, list[Check]] = {}
     with stages() as progress:
         task = progress.add_task("")
-        for name in names:
+        for name in tables:
+            entry = resolve(name)
             checks[name] = []
             for kind, some in kinds.items():
-                problem = Problem(shader(name, kind), kind)
+                trial = trial_of(entry, kind)
                 for each in some:
                     progress.update(task, description=f"{name} in {each}, {kind}")
-                    checks[name].append(check(problem, each))
+                    checks[name].append(check(trial, each))
     if json:
         print_json({"tables": {name: list(map(asdict, rows)) for name, rows in checks.items()}})
     else:
@@ -32,26 +59,31 @@ def run(names: list[str], language: str, precision: str | None, json: bool) -> i
 
 
 def _precisions(languages: list[str], precision: str | None) -> dict[str, list[str]]:
-    """Give the languages to check in each precision.
+    """Return the languages to check in each precision.
 
-    One language must have the precision that is asked for; of all, those that have it not are
+    One language must have the precision that is asked for; of all, those that do not have it are
     reported as not checked.
     """
+    from programs import PRECISIONS, language, precision_of
+
     if precision == "all":
         if len(languages) == 1:
-            return {kind: languages for kind in target(languages[0]).types}
+            return {kind: languages for kind in language(languages[0]).types}
         return {kind: languages for kind in PRECISIONS}
     if precision is not None and len(languages) > 1:
         if precision not in PRECISIONS:
             raise ValueError(f"precision is {precision!r}; allowed: {', '.join(PRECISIONS)}, all")
         return {precision: languages}
     kinds: dict[str, list[str]] = {}
-    for language in languages:
-        kinds.setdefault(precision_of(language, precision), []).append(language)
+    for each in languages:
+        kinds.setdefault(precision_of(each, precision), []).append(each)
     return kinds
 
 
-def _print(name: str, checks: list[Check]) -> None:
+def _print(name: str, checks: "list[Check]") -> None:
+    from programs.toolchains.verification import SLACK
+    from shadefit.terminal import print_table
+
     print_table(
         f"{name}: exported code against its float64 form and the exact integral",
         [
@@ -70,7 +102,7 @@ def _print(name: str, checks: list[Check]) -> None:
     print()
 
 
-def _row(each: Check) -> list[str]:
+def _row(each: "Check") -> list[str]:
     row = [each.language, each.precision, each.status]
     if each.form is None or each.units is None or each.allowed is None or each.integral is None:
         return [*row, *["—"] * 10]

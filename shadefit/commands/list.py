@@ -1,13 +1,22 @@
-"""`shadefit list`: what tables there are."""
+"""`shadefit list`: the tables that have a name."""
 
-from coefficients.catalogue import load, names
-from coefficients.table import Table
-from shadefit.terminal import print_json, print_table
+from typing import TYPE_CHECKING
+
+from shadefit.commands.options import Json
+
+if TYPE_CHECKING:
+    from coefficients.table import Table
+
+# Longer equations do not fit a column: --json has them.
+_LONGEST = 20
 
 
-def list_tables(json: bool) -> None:
-    """List every table that a name stands for."""
-    tables = {name: load(name) for name in names()}
+def list_tables(json: Json = False) -> None:
+    """List the tables that have a name."""
+    from coefficients.catalogue import entries
+    from shadefit.terminal import print_json, print_table
+
+    tables = {entry.name: entry.require_table() for entry in entries()}
     if json:
         print_json({"tables": [_record(name, table) for name, table in tables.items()]})
         return
@@ -15,14 +24,18 @@ def list_tables(json: bool) -> None:
         "Tables",
         ["name", "quantity", "form", "equation", "rms", "largest"],
         [
-            [name, table.quantity, table.form, _short(table.equation), *_errors(table)]
+            [
+                *(name, table.quantity, table.form),
+                table.equation if len(table.equation) <= _LONGEST else "—",
+                *_errors(table),
+            ]
             for name, table in tables.items()
         ],
         "Errors as the table states them, off the grid; 'compare' measures published ones.",
     )
 
 
-def _record(name: str, table: Table) -> dict:
+def _record(name: str, table: "Table") -> dict:
     errors = table.errors.off_grid if table.errors else None
     return {
         "name": name,
@@ -34,12 +47,7 @@ def _record(name: str, table: Table) -> dict:
     }
 
 
-def _short(equation: str) -> str:
-    """Leave out what is too long for a column: --json has it."""
-    return equation if len(equation) <= 20 else "—"
-
-
-def _errors(table: Table) -> list[str]:
+def _errors(table: "Table") -> list[str]:
     if table.errors is None:
         return ["—", "—"]
     return [f"{table.errors.off_grid.rms:.3e}", f"{table.errors.off_grid.max:.3e}"]

@@ -1,34 +1,14 @@
-"""Commands that draw, render and report."""
+"""`shadefit render`: a scene with exact functions and with tables, side by side, as PNG and EXR."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from shadefit.options import Json, angle
-
-app = typer.Typer()
+from shadefit.commands.options import Json, angle
 
 
-@app.command("figures", epilog="Example: shadefit figures figure-5 frontier --out /tmp/figures")
-def _figures(
-    names: Annotated[
-        list[str] | None, typer.Argument(help="Names of pictures; by default all.")
-    ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
-) -> None:
-    """Draw the supplement's figures and ours, each as PNG and SVG."""
-    from shadefit import figures
-
-    figures.run(names or [], out)
-
-
-@app.command(
-    "render",
-    epilog="Examples: shadefit render --density 0.1 --tilt 45deg; "
-    "shadefit render cloth --sweep --fibers even --size 160",
-)
-def _render(
+def render(
     scenes: Annotated[
         list[str] | None, typer.Argument(help="sphere, cloth; by default both.", metavar="SCENES")
     ] = None,
@@ -58,30 +38,10 @@ def _render(
     json: Json = False,
 ) -> None:
     """Render velvet with exact functions and with tables, side by side: render.png, render.exr."""
-    from shadefit.render import compare as render
+    from shadefit.render.compare import run
+    from shadefit.render.settings import Settings
 
-    settings = render.Settings(
+    settings = Settings(
         density, spread, tilt, fiber, base, sun, sun_height, sun_azimuth, sky, fibers, size
     )
-    render.run(scenes or [], settings, out, sweep, json)
-
-
-@app.command("report", epilog="Example: shadefit report --out /tmp/report.html")
-def _report(
-    out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("build/report.html"),
-) -> None:
-    """Write one HTML file: tables and their worth, figures, errata, and an explorer."""
-    from shadefit.report import page as report
-
-    report.run(out)
-
-
-@app.command("ambient", epilog="Example: shadefit ambient --out /tmp/figures")
-def _ambient(
-    out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("docs/figures"),
-    json: Json = False,
-) -> None:
-    """Measure the ambient model against the integral of the whole BRDF, and its energy."""
-    from shadefit.ambient import command as ambient
-
-    ambient.run(out, json)
+    run(scenes or [], settings, out, sweep, json)

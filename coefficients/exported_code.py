@@ -1,0 +1,209 @@
+"""The exported functions of an entry: evaluated, verified, counted, and written with a header."""
+
+import functools
+import shlex
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from coefficients.catalogue import EXACT, Entry, resolve
+from coefficients.proof_text import proofs
+from fitting import judge
+from fitting.points.grids import sobol_points
+from programs import (
+    KINDS,
+    PRECISIONS,
+    CallSequence,
+    Cost,
+    Difference,
+    Function,
+    Program,
+    ToolchainError,
+    Trial,
+    count_operations,
+    evaluate,
+    language,
+    precision_of,
+    toolchain,
+    trace,
+    write_source,
+)
+from programs.toolchains.verification import corners, run_code, text_of
+
+# Code is run on 2^EXPONENT points and the corners of the domain.
+EXPONENT = 17
+SEED = 20200718
+# Half precision is good enough where it adds no more to a fit's error than the error itself. The
+# closed form, which has none, may lose two of the eleven bits that half has.
+WORTH = 2.0
+HALF_ALLOWANCE = 4 * float(np.finfo(np.float16).eps)
+
+
+def trial_of(entry: Entry, precision: str, exponent: int = EXPONENT) -> Trial:
+    """Return what verifies the exported code of an entry in a precision, on 2^exponent points."""
+    points = [corners(entry.axes), sobol_points(entry.axes, exponent, SEED)]
+    reference = entry.problem.reference
+    return Trial(
+        CallSequence(entry.functions(precision), entry.arguments_at),
+        np.concatenate(points),
+        precision,
+        reference.values,
+        reference.sampling.verified,
+    )
+
+
+def exported_values(entry: Entry, points: np.ndarray) -> np.ndarray:
+    """Evaluate an entry's exported functions, clamps and all, in float64 at points (…, axes): (…).
+
+    The functions are called one after the other, as a renderer calls them.
+    """
+    flat = points.reshape(-1, points.shape[-1])
+    results = np.empty((len(flat), 0))
+    for program, own in zip(programs_of(entry), entry.arguments_at(flat), strict=True):
+        results = evaluate(program, np.concatenate([results, own], axis=1))
+    return results[:, 0].reshape(points.shape[:-1])
+
+
+@functools.lru_cache(maxsize=256)
+def programs_of(entry: Entry, precision: str = "double") -> tuple[Program, ...]:
+    """Return the programs of an entry's exported functions, in the order of their calls."""
+    return tuple(trace(each) for each in entry.functions(precision))
+
+
+def operations_of(entry: Entry) -> int:
+    """Count the operations of the function that gives the value: of P_s, those of a direction."""
+    return count_operations(trace(entry.functions()[-1])).operations
+
+
+def costs(functions: Sequence[Function]) -> dict[str, Cost]:
+    """Count the operations of each function, by its name."""
+    return {each.name: count_operations(trace(each)) for each in functions}
+
+
+def cost_text(cost: Cost) -> str:
+    """Write an operation count as text: '63 operations (23 add, 30 mul, …)'."""
+    kinds = [f"{getattr(cost, kind)} {kind}" for kind in KINDS if getattr(cost, kind)]
+    fused = f"; {cost.fma} fma possible" if cost.fma else ""
+    return f"{cost.operations} operations ({', '.join(kinds)}{fused})"
+
+
+def source_file(
+    entry: Entry,
+    key: str,
+    precision: str | None = None,
+    function_name: str | None = None,
+    constants: str = "inline",
+) -> str:
+    """Return the source file of an entry, headed by its domain, errors, proofs and cost.
+
+    Arguments: `key`, a key of LANGUAGES; `precision`, None for float (JavaScript: double);
+    `function_name`, None for the quantity's own; `constants`, "inline" or "table". The same call
+    returns the same bytes on a machine. Raises ValueError for what cannot be written.
+    """
+    kind = precision_of(key, precision)
+    functions = entry.functions(kind, function_name)
+    # Before anything is measured: what cannot be written is refused at once.
+    bare = write_source(functions, key, kind, constants=constants)
+    command = ["shadefit", "export", entry.name, "--to", key]
+    if precision is not None:
+        command += ["--precision", precision]
+    if function_name is not None:
+        command += ["--name", function_name]
+    if constants != "inline":
+        command += ["--constants", constants]
+    trial = trial_of(entry, kind)
+    trial = replace(trial, calls=replace(trial.calls, functions=functions))
+    head = _header(entry, trial, key, bare, shlex.join(command))
+    return write_source(functions, key, kind, constants=constants, header=head)
+
+
+def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> dict[str, str]:
+    functions, precision = trial.calls.functions, trial.precision
+    reference = entry.problem.reference
+    equation = entry.equation
+    head = {
+        "Quantity": f"{entry.problem.description}: {reference.symbol} = {reference.definition}",
+        "Equation": f"{equation} of table {entry.name}" if entry.fitted else equation,
+        "Domain": f"{_domain(functions)}; all others without unit",
+    }
+    if entry.remark:
+        head["Arguments"] = entry.remark
+    own = None
+    if entry.fitted is None:
+        # The same points and steps, without the roundings of the precision.
+        double = replace(trial, precision="double", calls=_calls(entry, "double"))
+        left = trial.against_integral(double.form)
+        head["Error in exact arithmetic"] = (
+            f"none but what the root's steps leave: {text_of(left)} (in float64)"
+        )
+    else:
+        known = proofs(entry)
+        if known:
+            head["Proven in exact arithmetic"] = "; ".join(known)
+        errors = judge(entry.fitted)
+        own = Difference(errors.largest, errors.rms)
+        uphill = ", and uphill from the worst" if reference.sampling.climbs else ""
+        head["Error in exact arithmetic"] = (
+            f"{text_of(own)} against the integral (rms over {errors.points} points off the fitting "
+            f"grid; largest sought on more, of the boundary and where it is steep{uphill})"
+        )
+    measured, how = _measured(trial, key, source)
+    head[f"Error in {precision}"] = (
+        f"{text_of(measured)} against the integral ({len(trial.integral)} fixed points, corners "
+        f"of the domain included; {how})"
+    )
+    if precision == "half":
+        head["Half precision"] = _verdict(trial, own, measured)
+    head["Cost"] = "; ".join(f"{n}: {cost_text(cost)}" for n, cost in costs(functions).items())
+    beside = closed_form_beside(entry)
+    if beside is not None:
+        (exact,) = costs(beside.functions(precision)).values()
+        head["Cost of the closed form"] = f"{cost_text(exact)} ({beside.name})"
+    head["Made by"] = command
+    return head
+
+
+def closed_form_beside(entry: Entry) -> Entry | None:
+    """Return the closed form whose cost is told beside a table's; None where there is none."""
+    if entry.fitted is None or entry.fitted.form.inputs is None:
+        return None
+    return resolve(f"{EXACT}/{entry.problem.name}") if entry.problem.exact_code else None
+
+
+def _calls(entry: Entry, precision: str) -> CallSequence:
+    return CallSequence(entry.functions(precision), entry.arguments_at)
+
+
+def _domain(functions: Sequence[Function]) -> str:
+    """Return the domains of the functions' scalar arguments, by the arguments' names."""
+    parameters = {p.name: p for each in functions for p in each.parameters if p.size is None}
+    return ", ".join(
+        f"{p.name} in [{p.domain[0]:.6g}, {p.domain[1]:.6g}]{'' if p.unit == '1' else ' ' + p.unit}"
+        for p in parameters.values()
+    )
+
+
+def _measured(trial: Trial, key: str, source: str) -> tuple[Difference, str]:
+    name = language(key).name
+    reason = f"{name} was not run"
+    if toolchain(key).missing(trial.precision) is None:
+        try:
+            values = run_code(trial, key, source)
+            return trial.against_integral(values), f"this code run in {name}"
+        except ToolchainError as error:
+            reason = error.summary
+    values = trial.emulated(PRECISIONS[trial.precision])
+    return trial.against_integral(values), f"emulated, every operation rounded: {reason}"
+
+
+def _verdict(trial: Trial, own: Difference | None, measured: Difference) -> str:
+    if own is None:
+        good = measured.largest <= HALF_ALLOWANCE and not measured.not_finite
+        bound = f"largest error {HALF_ALLOWANCE:.1e}"
+    else:
+        # The fit's own error on the same points, so that only the precision differs.
+        own = trial.against_integral(trial.form)
+        good = measured.within(replace(own, largest=WORTH * own.largest, rms=WORTH * own.rms))
+        bound = f"{WORTH:g} times the fit's own {text_of(own)} on the same points"
+    return f"{'good enough' if good else 'NOT GOOD ENOUGH'} (bound: {bound})"

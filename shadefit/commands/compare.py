@@ -1,0 +1,97 @@
+"""`shadefit compare`: tables beside the published ones, each against the exact values."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from shadefit.commands.options import Json
+from shadefit.completion import complete_table
+
+if TYPE_CHECKING:
+    from coefficients.catalogue import Entry
+    from coefficients.compare import Comparison
+
+# Up to this many coefficients are printed; --json has them all.
+PRINTED_COEFFICIENTS = 17
+
+
+def compare(
+    tables: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Names or paths; by default the refits of what is published.",
+            autocompletion=complete_table,
+        ),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Compare tables with the published ones, each against the exact integral."""
+    run(tables or [], json)
+
+
+def run(names: list[str], json: bool) -> None:
+    """Compare each table with the published one of its quantity."""
+    from coefficients.catalogue import resolve, with_published
+    from coefficients.compare import as_json, compare
+    from shadefit.terminal import print_json
+
+    chosen = [resolve(name) for name in names or [owner.name for owner in with_published()]]
+    comparisons = [compare(contestants(entry)) for entry in chosen]
+    if json:
+        print_json({"comparisons": [as_json(comparison) for comparison in comparisons]})
+        return
+    for comparison in comparisons:
+        _print(comparison)
+
+
+def contestants(entry: "Entry") -> "list[tuple[str, Entry]]":
+    """Return the published tables of an entry's quantity and the entry, by label."""
+    from coefficients.catalogue import printed, published
+
+    entry.require_table()
+    corrected, as_printed = published(entry.problem), printed(entry.problem)
+    if corrected is None:
+        return [(entry.name, entry)]
+    labelled = [("published", corrected)]
+    if as_printed is not None:
+        labelled = [("published, corrected", corrected), ("published, as printed", as_printed)]
+    if entry.kind not in ("published", "printed"):
+        labelled.append((f"refitted {entry.name}" if entry.kind == "refitted" else entry.name, entry))
+    return labelled
+
+
+def _print(comparison: "Comparison") -> None:
+    from coefficients.compare import coefficient_rows
+    from shadefit.terminal import place, print_table
+
+    first = comparison.contestants[0]
+    domain = ", ".join(f"{axis.name} in {axis.domain}" for axis in comparison.domain.axes)
+    print_table(
+        f"{comparison.quantity}: {first.table.equation}, "
+        f"{first.errors.points:,} points off the grid",
+        ["table", "rms error", "ratio", "largest error", "ratio", "at"],
+        [
+            [
+                each.label,
+                f"{each.errors.rms:.4e}",
+                f"{each.rms_ratio:.4f}",
+                f"{each.errors.largest:.4e}",
+                f"{each.largest_ratio:.4f}",
+                place(each.errors.where),
+            ]
+            for each in comparison.contestants
+        ],
+        f"Measured for {domain}. The last differs from the first by at most "
+        f"{comparison.difference:.3e}, at {place(comparison.where)}.",
+    )
+    same = len({each.table.form for each in comparison.contestants}) == 1
+    rows = coefficient_rows(comparison) if same else []
+    if 0 < len(rows) <= PRINTED_COEFFICIENTS:
+        print_table(
+            f"{comparison.quantity}: coefficients",
+            ["coefficient", *(each.label for each in comparison.contestants)],
+            [[name, *(f"{value:.7f}" for value in values)] for name, values in rows],
+            "Rational coefficients are far from unique: the functions count.",
+        )
+    elif rows:
+        print(f"{len(rows)} coefficients: --json prints them.\n")

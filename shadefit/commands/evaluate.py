@@ -1,0 +1,182 @@
+"""`shadefit evaluate`: one exact value by every leg, and what the tables make of it."""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from shadefit.commands.options import Json, angle, checked, flag_of
+from shadefit.completion import complete_table
+
+if TYPE_CHECKING:
+    from fitting import FittedForm
+    from integrals.reference import Axis, Estimate, Reference
+    from quantities import Problem
+
+MAX_SAMPLES = 1 << 24
+# The options of axes depend on the quantity: they are read by `axis_values`.
+SETTINGS = {"ignore_unknown_options": True, "allow_extra_args": True}
+
+
+def evaluate(
+    context: typer.Context,
+    integral: Annotated[str, typer.Argument(help="ps, g, q, r or velvet.", metavar="INTEGRAL")],
+    table: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A further table's name or path; may be given again.",
+            autocompletion=complete_table,
+        ),
+    ] = None,
+    samples: Annotated[int, typer.Option(help="Monte Carlo samples.")] = 1 << 16,
+    sequence: Annotated[
+        Literal["random", "sobol"], typer.Option(help="Monte Carlo points.")
+    ] = "random",
+    seed: Annotated[int, typer.Option(help="Monte Carlo seed.")] = 0,
+    json: Json = False,
+) -> None:
+    """Evaluate an integral by every leg, by the published and refitted tables, and by others.
+
+    Each argument of the integral is an option: --alpha, --theta-f, --theta-u and --phi of ps;
+    --density and --cos-v of g; --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
+    Angles are radians unless 'deg' follows: 45deg, 0.785, 0.785rad.
+    """
+    run(integral, context.args, table or [], samples, sequence, seed, json)
+
+
+def run(
+    name: str,
+    given: list[str],
+    extra: list[str],
+    samples: int,
+    sequence: str,
+    seed: int,
+    json: bool,
+) -> None:
+    """Evaluate the quantity `name` at the values of the options `given`.
+
+    Beside the legs stand the published table, the refitted one, and those that `extra` names.
+    """
+    from quantities import problems
+    from shadefit.terminal import place, print_json, print_table
+
+    known = problems()
+    if name not in known:
+        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(known)}")
+    owner = known[name]
+    reference = owner.reference
+    arguments = axis_values(owner, given)
+    if not 2 <= samples <= MAX_SAMPLES:
+        raise ValueError(f"samples = {samples}: allowed are 2 to {MAX_SAMPLES}")
+    if not 0 <= seed < 1 << 63:
+        raise ValueError(f"seed = {seed}: allowed are 0 to 2⁶³ − 1")
+    tables = _tables(owner, extra)
+    options = (("samples", samples), ("sequence", sequence), ("seed", seed))
+    legs = {}
+    for leg_name in reference.legs:
+        leg = _compiled(reference, leg_name, options if leg_name == "monte_carlo" else ())
+        estimate = leg(*arguments.values())
+        legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
+    exact = legs[reference.best_leg]["value"]
+    if math.isnan(exact):
+        raise ValueError(
+            f"{owner.symbol} has no limit at {place(arguments)}, and no value: "
+            "allowed are all other points of its domain"
+        )
+    found = {label: _by_form(fitted, arguments, exact) for label, fitted in tables.items()}
+    if json:
+        print_json({"quantity": name, "arguments": arguments, "legs": legs, "tables": found})
+        return
+    rows = [
+        [leg_name.replace("_", " "), f"{leg['value']:.15g}", f"± {leg['error']:.1e}"]
+        for leg_name, leg in legs.items()
+    ]
+    print_table(
+        f"{owner.symbol} = {reference.definition}",
+        ["by", "value", "error"],
+        rows + [[label, *_cells(entry)] for label, entry in found.items()],
+        "Error: stated by the leg (Monte Carlo: one standard error); of a table, its distance "
+        "from the exact value.",
+    )
+
+
+def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:
+    """Read the options of a quantity's axes, such as ['--alpha', '0.35', '--phi=90deg'].
+
+    Returns the values by the axes' names, in order. Raises ValueError for an option that is missing,
+    that is none of the quantity's, or whose value is outside the axis's domain.
+    """
+    flags = {flag_of(name): axis for axis in owner.axes for name in (axis.name, axis.alias) if name}
+    wanted = ", ".join(flag_of(axis.name) for axis in owner.axes)
+    values: dict[str, float] = {}
+    rest = list(given)
+    while rest:
+        flag, equals, text = rest.pop(0).partition("=")
+        if flag not in flags:
+            raise ValueError(f"{flag} is no argument of {owner.name}, which takes {wanted}")
+        if not equals:
+            if not rest:
+                raise typer.BadParameter(f"Option '{flag}' requires an argument.")
+            text = rest.pop(0)
+        values[flags[flag].name] = _number(flag, flags[flag], text)
+    for axis in owner.axes:
+        if axis.name not in values:
+            flag = flag_of(axis.name)
+            raise ValueError(f"{flag} is missing of {owner.name}, which takes {wanted}")
+    return {axis.name: checked(axis, values[axis.name]) for axis in owner.axes}
+
+
+def _number(flag: str, axis: "Axis", text: str) -> float:
+    if axis.unit == "rad":
+        return angle(text)
+    try:
+        return float(text)
+    except ValueError:
+        message = f"Invalid value for '{flag}': {text!r} is not a valid float."
+        raise ValueError(message) from None
+
+
+@functools.lru_cache(maxsize=16)
+def _compiled(
+    reference: "Reference", leg: str, options: tuple[tuple[str, Any], ...]
+) -> "Callable[..., Estimate]":
+    """Compile a leg whole: operation by operation it would take several times as long."""
+    import jax
+
+    return jax.jit(functools.partial(reference.legs[leg], **dict(options)))
+
+
+def _tables(owner: "Problem", extra: list[str]) -> "dict[str, FittedForm]":
+    """Return the tables to show by label; those that `extra` names have to be of the quantity."""
+    from coefficients.catalogue import published, refitted, resolve
+
+    known = {"published": published(owner), "refitted": refitted(owner)}
+    found = {label: each.require_fitted() for label, each in known.items() if each is not None}
+    for name in extra:
+        entry = resolve(name)
+        if entry.problem is not owner:
+            raise ValueError(
+                f"table {name} is of {entry.problem.name}: allowed are those of {owner.name}"
+            )
+        found[name] = entry.require_fitted()
+    return found
+
+
+def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float) -> dict:
+    outside = [
+        f"{axis.name} is outside {axis.domain}"
+        for axis in fitted.axes
+        if not axis.contains(arguments[axis.name])
+    ]
+    if outside:
+        return {"value": None, "difference": None, "reason": "; ".join(outside)}
+    value = float(fitted(*arguments.values()))
+    return {"value": value, "difference": value - exact, "reason": None}
+
+
+def _cells(entry: dict) -> list[str]:
+    if entry["value"] is None:
+        return ["—", entry["reason"]]
+    return [f"{entry['value']:.15g}", f"{entry['difference']:+.1e}"]

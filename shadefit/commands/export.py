@@ -1,0 +1,67 @@
+"""`shadefit export`: a table as JSON, or as shader code headed by what it is worth."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from shadefit.commands.options import Precision
+from shadefit.completion import complete_language, complete_shader
+
+
+def export(
+    table: Annotated[
+        str,
+        typer.Argument(
+            help="A table's name or path; with --to, also exact/NAME.",
+            autocompletion=complete_shader,
+        ),
+    ],
+    to: Annotated[
+        str | None,
+        typer.Option(
+            help="Language to write as code; by default JSON.",
+            metavar="LANG",
+            autocompletion=complete_language,
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File; by default standard output.")
+    ] = None,
+    precision: Annotated[
+        Precision | None, typer.Option(help="By default float (JavaScript: double).")
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Name of the function; by default the paper's.")
+    ] = None,
+    constants: Annotated[
+        Literal["inline", "table"] | None,
+        typer.Option(help="Where the constants stand; by default inline."),
+    ] = None,
+) -> None:
+    """Write a table's validated JSON, or its functions as code in a language.
+
+    The code is run where its compiler is here, and headed by its measured error.
+    """
+    from coefficients.catalogue import resolve
+    from coefficients.exported_code import source_file
+    from coefficients.files import require_writable_file, write_whole
+    from coefficients.table import serialise
+
+    if output is not None:
+        require_writable_file(output)
+    if to is None:
+        for option, given in (
+            ("--precision", precision),
+            ("--name", name),
+            ("--constants", constants),
+        ):
+            if given is not None:
+                raise ValueError(f"{option} {given!r} is for code: allowed with --to LANG")
+        text = serialise(resolve(table).require_table())
+    else:
+        text = source_file(resolve(table), to, precision, name, constants or "inline")
+    if output is None:
+        print(text, end="")
+    else:
+        write_whole(output, text)

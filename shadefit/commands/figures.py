@@ -1,0 +1,28 @@
+"""`shadefit figures`: the supplement's figures and ours."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def figures(
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Names of pictures; by default all.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
+) -> None:
+    """Draw the supplement's figures and ours, each as PNG and SVG."""
+    from coefficients.files import require_writable, write_whole_bytes
+    from shadefit.figures import pictures, render
+
+    known = pictures()
+    for name in names or []:
+        if name not in known:
+            raise ValueError(f"no figure is called {name!r}: allowed are {', '.join(known)}")
+    require_writable(out)
+    for name in names or known:
+        for extension, data in render(known[name].draw).items():
+            path = out / f"{name}.{extension}"
+            write_whole_bytes(path, data)
+            print(path)

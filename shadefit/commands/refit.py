@@ -1,0 +1,197 @@
+"""`shadefit refit`: refit forms to exact values, the published ones or others, and write tables."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from shadefit.commands.options import (
+    Bounded,
+    Json,
+    Norm,
+    Relative,
+    Rounding,
+    Side,
+    goal_fields,
+)
+from shadefit.completion import complete_quantity
+
+if TYPE_CHECKING:
+    from coefficients.catalogue import Entry
+    from coefficients.table import Table
+    from quantities import Problem
+
+ALL = "all"
+# Compilation holds one core at a time: a second fit fills the other.
+WORKERS = 2
+
+
+def refit(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="ps, g, q, r, velvet or all (the default); or best/NAME.",
+            autocompletion=complete_quantity,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for NAME.json; by default the table is replaced."),
+    ] = None,
+    grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129, for the paper's forms.")] = 65,
+    weight: Annotated[
+        Literal["uniform", "solid-angle", "cosine"],
+        typer.Option(help="Measure of light directions in the fit of ps; the others have none."),
+    ] = "uniform",
+    norm: Norm = None,
+    side: Side = None,
+    rounding: Rounding = None,
+    relative: Relative = False,
+    bounded: Bounded = False,
+    json: Json = False,
+) -> None:
+    """Refit forms to exact values, the paper's or a best table's, and write the tables."""
+    given = goal_fields(norm, side, rounding, relative, bounded)
+    run(names or [], out, grid, weight, given, json)
+
+
+def run(
+    names: list[str],
+    out: Path | None,
+    grid: int,
+    weight: str,
+    given: dict[str, Any],
+    as_json: bool,
+) -> None:
+    """Refit, and write `out`/NAME.json for each; nothing is written unless every fit holds.
+
+    `out` None: tables replace those that their names stand for. `given` holds the fields of a goal
+    that differ from the table's own.
+    """
+    from concurrent.futures import ThreadPoolExecutor
+
+    from coefficients.files import require_writable, write_whole
+    from coefficients.table import serialise
+    from shadefit.terminal import print_json, print_table, stages
+
+    chosen = selection(names)
+    for owner in [each for each in chosen if given and _has_own_goal(each)]:
+        if owner.name in names:
+            raise ValueError(
+                f"{owner.name} has a goal of its own:{_options(given)} is for the others"
+            )
+        chosen.remove(owner)
+    folders = [out or _own_folder(each.name) for each in chosen]
+    for folder in set(folders):
+        require_writable(folder)
+    with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
+
+        def make(each: "Problem | Entry") -> "Table":
+            task = progress.add_task(each.name, total=None)
+
+            def tell(stage: str) -> None:
+                progress.update(task, description=f"{each.name}: {stage}")
+
+            table = _table(each, grid, weight, given, tell)
+            tell("done")
+            return table
+
+        tables = list(workers.map(make, chosen))
+    files = [folder / f"{table.name}.json" for folder, table in zip(folders, tables, strict=True)]
+    for table, file in zip(tables, files, strict=True):
+        write_whole(file, serialise(table))
+    if as_json:
+        records = [_record(table, file) for table, file in zip(tables, files, strict=True)]
+        print_json({"tables": records})
+    else:
+        print_table(
+            "Refitted tables",
+            ["table", "equation", "coefficients", "rms", "largest", "denominators ≥", "file"],
+            [_row(table, file) for table, file in zip(tables, files, strict=True)],
+            "Errors are measured off the grid, against exact values.",
+        )
+
+
+def selection(names: list[str]) -> "list[Problem | Entry]":
+    """Return what is meant, quantities in their own order; 'all' or nothing stands for those."""
+    from coefficients.catalogue import names_of_best, resolve
+    from quantities import problems
+
+    every, best = problems(), names_of_best()
+    unknown = [name for name in names if name not in (*every, ALL, *best)]
+    if unknown:
+        allowed = ", ".join((*every, ALL, *best))
+        raise ValueError(f"nothing is called {unknown[0]!r}: allowed are {allowed}")
+    whole = not names or ALL in names
+    owners = [owner for name, owner in every.items() if whole or name in names]
+    return [*owners, *(resolve(name) for name in best if name in names)]
+
+
+def _has_own_goal(each: "Problem | Entry") -> bool:
+    """Tell whether a quantity's default form is fitted to a goal that cannot be chosen."""
+    from fitting.goal import LEAST_SQUARES
+    from quantities import Problem
+
+    solver = each.default.solver if isinstance(each, Problem) else None
+    return getattr(solver, "goal", LEAST_SQUARES) != LEAST_SQUARES
+
+
+def _own_folder(name: str) -> Path:
+    """Return the folder that a table's name is kept in, by a short path where there is one."""
+    from coefficients.catalogue import path_of
+
+    folder, here = path_of(name).parent, Path.cwd()
+    return folder.relative_to(here) if folder.is_relative_to(here) else folder
+
+
+def _table(
+    each: "Problem | Entry",
+    grid: int,
+    weight: str,
+    given: dict[str, Any],
+    tell: Callable[[str], None],
+) -> "Table":
+    from coefficients.record import table_of
+    from fitting.fit import fit
+    from fitting.goal import Goal
+    from quantities import Problem
+
+    if isinstance(each, Problem):
+        command = f"shadefit refit {each.name} --grid {grid} --weight {weight}{_options(given)}"
+        return table_of(fit(each.default, Goal(**given), grid, weight, tell), command)
+    table = each.require_table()
+    own = {} if table.goal is None else table.goal.model_dump()
+    goal = Goal(**{**own, **given})
+    made = fit(each.require_fitted().form, goal, measure=weight, progress=tell)
+    options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
+    return table_of(made, f"shadefit refit {each.name}{options}", table.name)
+
+
+def _options(given: dict[str, Any]) -> str:
+    """Write the options that a goal is asked for by."""
+    flags = {
+        key: f" --{key}" if value is True else f" --{key} {value}" for key, value in given.items()
+    }
+    return "".join(flags.values())
+
+
+def _record(table: "Table", file: Path) -> dict:
+    data = table.model_dump(by_alias=True, exclude_none=True)
+    return {"file": str(file), **data}
+
+
+def _row(table: "Table", file: Path) -> list[str]:
+    errors, certificates = table.errors, table.certificates
+    assert errors is not None
+    assert certificates is not None
+    bound = certificates.denominator_bound
+    return [
+        table.name,
+        table.equation if len(table.equation) <= 20 else table.form,
+        str(table.size),
+        f"{errors.off_grid.rms:.4e}",
+        f"{errors.off_grid.max:.4e}",
+        "none" if bound is None else f"{bound:.3g}",
+        str(file),
+    ]

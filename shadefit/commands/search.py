@@ -1,0 +1,122 @@
+"""`shadefit search`: families of forms, fitted one after the other, and the frontier among them."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from shadefit.commands.options import (
+    Bounded,
+    Json,
+    Norm,
+    Relative,
+    Rounding,
+    Side,
+    goal_fields,
+)
+
+if TYPE_CHECKING:
+    from coefficients.search import Found, Result
+
+
+def search(
+    quantity: Annotated[str, typer.Argument(help="ps, g, q or r.", metavar="QUANTITY")],
+    budget: Annotated[
+        int | None, typer.Option(help="Most operations a call (of P_s a direction).")
+    ] = None,
+    max_error: Annotated[
+        float | None, typer.Option(help="Print only forms with no larger error.")
+    ] = None,
+    least_alpha: Annotated[
+        float, typer.Option(help="Lower end of α in the fits of ps and r.")
+    ] = 0.15,
+    norm: Norm = None,
+    side: Side = None,
+    rounding: Rounding = None,
+    relative: Relative = False,
+    bounded: Bounded = False,
+    out: Annotated[
+        Path, typer.Option(help="Folder for tables and plot; what is there is not fitted again.")
+    ] = Path("search"),
+    json: Json = False,
+) -> None:
+    """Fit families of forms, and print and plot operations against the largest error.
+
+    By default the largest error is made least, with coefficients in float32.
+    """
+    from coefficients.files import require_writable, write_whole_bytes
+    from coefficients.search import Search
+    from fitting import Goal
+    from quantities import problems
+    from shadefit.figures.search import draw
+    from shadefit.terminal import stages
+
+    fields: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
+    fields |= goal_fields(norm, side, rounding, relative, bounded)
+    goal = Goal(**fields)
+    known = {name: each for name, each in problems().items() if each.candidates is not None}
+    if quantity not in known:
+        raise ValueError(f"no forms of {quantity!r} are known: allowed are {', '.join(known)}")
+    if budget is not None and budget < 1:
+        raise ValueError(f"budget = {budget}: at least one operation is needed")
+    if max_error is not None and not max_error > 0:
+        raise ValueError(f"max-error = {max_error}: it must be positive")
+    if not 0.01 <= least_alpha < 1:
+        raise ValueError(f"least-alpha = {least_alpha}: allowed are 0.01 to below 1")
+    require_writable(out)
+    wanted = Search(known[quantity], goal, out, budget, {"alpha": least_alpha})
+    with stages() as progress:
+        task = progress.add_task(quantity, total=None)
+        result = wanted.run(lambda text: progress.update(task, description=f"{quantity}: {text}"))
+    drawn = out / f"{quantity}-frontier"
+    for extension, data in draw(known[quantity], result).items():
+        write_whole_bytes(drawn.with_suffix(f".{extension}"), data)
+    good = [each for each in result.best if max_error is None or each.largest <= max_error]
+    if json:
+        _print_json(quantity, result, good)
+    else:
+        limit = "" if max_error is None else f"; {len(good)} of them within {max_error:g}"
+        _print(quantity, result, good, limit, drawn)
+
+
+def _print_json(quantity: str, result: "Result", good: "list[Found]") -> None:
+    from shadefit.terminal import print_json
+
+    records = {"frontier": result.best, "good": good, "all": result.found}
+    print_json(
+        {
+            "quantity": quantity,
+            "published": None if result.published is None else asdict(result.published),
+            "exact": [asdict(each) for each in result.exact],
+            "refused": result.refused,
+            **{key: [asdict(each) for each in value] for key, value in records.items()},
+        }
+    )
+
+
+def _print(
+    quantity: str, result: "Result", good: "list[Found]", limit: str, drawn: Path
+) -> None:
+    from shadefit.terminal import print_table
+
+    first = [] if result.published is None else [result.published]
+    print_table(
+        f"{quantity}: the frontier of {len(result.found)} forms{limit}",
+        ["table", "form", "coefficients", "operations", "rms", "largest", "published / this"],
+        [_row(each, result.published) for each in (*first, *(good or result.best), *result.exact)],
+        f"Operations a call, of P_s a direction. {result.refused} forms refused: they have poles, "
+        f"or are not shown to have none. Plot: {drawn}.png",
+    )
+
+
+def _row(each: "Found", published: "Found | None") -> list[str]:
+    return [
+        each.name,
+        each.form,
+        str(each.coefficients),
+        str(each.operations),
+        f"{each.rms:.3e}",
+        f"{each.largest:.3e}",
+        "—" if published is None else f"{published.largest / each.largest:.1f}",
+    ]
