@@ -11,6 +11,7 @@ from integrals.fuzz.r import R as R
 from integrals.fuzz.velvet import VELVET as VELVET
 from integrals.reference import Axis as Axis
 from integrals.reference import Estimate as Estimate
-from integrals.reference import Integral as Integral
+from integrals.reference import Reference as Reference
+from integrals.sampling import Sampling as Sampling
 
-INTEGRALS = {integral.name: integral for integral in (PS, G, Q, R, VELVET)}
+REFERENCES = {each.name: each for each in (PS, G, Q, R, VELVET)}

@@ -1,14 +1,21 @@
-"""What an integral is: named axes with their domain, and legs that evaluate it independently."""
+"""The exact values of a quantity: its axes, and independent methods ("legs") that evaluate it."""
 
 import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
+
+from integrals.sampling import Sampling
+
+# How points are spread along an axis: evenly; evenly in the logarithm; or as u², u in [0, 1],
+# which puts more of them near the lower end.
+Scale = Literal["linear", "logarithmic", "square"]
 
 
 class Estimate(NamedTuple):
@@ -23,7 +30,11 @@ Leg = Callable[..., Estimate]
 
 @dataclass(frozen=True)
 class Axis:
-    """One argument of an integral: its name, symbol, unit ('rad' or '1') and domain."""
+    """One argument of a quantity: its name, symbol, unit ('rad' or '1') and domain.
+
+    `scale` says how points are spread along it. `period` is set for an angle that goes all the way
+    round. `alias` is a second, shorter name of the command line's option.
+    """
 
     name: str
     symbol: str
@@ -32,6 +43,9 @@ class Axis:
     upper: float
     meaning: str
     open_below: bool = False
+    scale: Scale = "linear"
+    period: float | None = None
+    alias: str | None = None
 
     @property
     def domain(self) -> str:
@@ -53,14 +67,32 @@ class Axis:
             raise ValueError(f"{given} is outside its domain {domain}")
         return value
 
+    def place(self, fraction: np.ndarray) -> np.ndarray:
+        """Map fractions in [0, 1] of the axis to values, by its scale."""
+        width = self.upper - self.lower
+        if self.scale == "logarithmic":
+            return self.lower * (1 + width / self.lower) ** fraction
+        if self.scale == "square":
+            fraction = fraction**2
+        return self.lower + width * fraction
 
-@dataclass(frozen=True)
-class Integral:
-    """A named quantity, its axes, and the independent legs that give its exact value.
+
+def box_of(axes: tuple[Axis, ...]) -> np.ndarray:
+    """Give the lower and upper ends of axes, shape (axes, 2)."""
+    return np.array([(axis.lower, axis.upper) for axis in axes])
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """A quantity's exact values: its axes, and the independent legs that evaluate it.
 
     Each leg takes the axes' values in order, scalars in radians where the unit is so, and gives
     an `Estimate`; a leg that does not exist is None. Every leg gives NaN outside the domain, and
-    where the integral has no limit (G at d = ν = 0).
+    where the quantity has no limit (G at d = ν = 0).
+
+    `sampling` says at how many points forms are fitted, checked and judged. `batch` points are
+    evaluated at once. `options_at` gives, for points (n, axes), further arguments of the best leg,
+    such as how many nodes a quadrature rule needs there.
     """
 
     name: str
@@ -68,9 +100,12 @@ class Integral:
     meaning: str
     definition: str
     axes: tuple[Axis, ...]
+    sampling: Sampling
     closed_form: Leg | None = None
     quadrature: Leg | None = None
     monte_carlo: Leg | None = None
+    batch: int = 8192
+    options_at: Callable[[np.ndarray], dict[str, Any]] = lambda _: {}
 
     @property
     def legs(self) -> dict[str, Leg]:
@@ -83,13 +118,39 @@ class Integral:
         return {name: leg for name, leg in every.items() if leg is not None}
 
     @property
-    def reference(self) -> str:
+    def best_leg(self) -> str:
         """The name of the most exact leg."""
         return next(iter(self.legs))
 
     def value(self, *arguments) -> Array:
-        """Evaluate the reference leg at one point."""
-        return self.legs[self.reference](*arguments).value
+        """Evaluate the most exact leg at one point."""
+        return self.legs[self.best_leg](*arguments).value
+
+    def estimates(self, points: np.ndarray) -> Estimate:
+        """Evaluate the most exact leg at points (n, axes): values and errors, (n,) each."""
+        options = tuple(self.options_at(points).items())
+        return in_batches(functools.partial(_estimates, self, options), points, self.batch)
+
+    def values(self, points: np.ndarray) -> np.ndarray:
+        """Evaluate the most exact leg at points (n, axes): (n,)."""
+        return np.asarray(self.estimates(points).value)
+
+
+@functools.partial(jax.jit, static_argnums=(0, 1))
+def _estimates(reference: Reference, options: tuple[tuple[str, Any], ...], points) -> Estimate:
+    leg = reference.legs[reference.best_leg]
+    return jax.vmap(lambda x: leg(*x, **dict(options)))(points)
+
+
+def in_batches(function: Callable, points: np.ndarray, batch: int):
+    """Apply a function of points (batch, axes) to points (n, axes), so that it is compiled once.
+
+    The last batch is filled up with its last point. Returns what the function returns, (n, …).
+    """
+    count = len(points)
+    padded = np.concatenate([points, np.repeat(points[-1:], -count % batch, axis=0)])
+    parts = [function(padded[first : first + batch]) for first in range(0, count, batch)]
+    return jax.tree.map(lambda *each: jnp.asarray(np.concatenate(each)[:count]), *parts)
 
 
 def leg(*axes: Axis) -> Callable[[Leg], Leg]:

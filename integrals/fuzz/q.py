@@ -3,6 +3,8 @@
 Q(d) = (1/π) ∫_Ω exp(−d/(u·n)) (u·n) dω_u (Eq. 4) = 2 E₃(d).
 """
 
+from dataclasses import replace
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -10,8 +12,9 @@ from jax import Array
 
 from integrals.fuzz.g import DENSITY
 from integrals.monte_carlo import Sequence, mean_estimate, unit_points
-from integrals.reference import Estimate, Integral, leg
+from integrals.reference import Estimate, Reference, leg
 from integrals.rules.interval import checked_steps, exponential_decay
+from integrals.sampling import Sampling
 from integrals.special.exponential import e3
 from shading import penetration
 from shading.types import Scalar
@@ -57,12 +60,13 @@ def monte_carlo(
     return mean_estimate(values)
 
 
-Q = Integral(
+Q = Reference(
     name="q",
     symbol="Q",
     meaning="cosine-weighted average of the chance to penetrate the layer unscattered",
     definition="(1/π) ∫_Ω exp(−d/(u·n)) (u·n) dω_u",
-    axes=AXES,
+    axes=(replace(DENSITY, scale="square"),),
+    sampling=Sampling(fitted=11, checked=13, judged=16),
     closed_form=closed_form,
     quadrature=quadrature,
     monte_carlo=monte_carlo,

@@ -10,8 +10,9 @@ from jax import Array
 
 from integrals.fuzz.ps import ALPHA, THETA_F, fraction_at
 from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
-from integrals.reference import Estimate, Integral, leg
+from integrals.reference import Estimate, Reference, leg
 from integrals.rules.interval import checked_rule, gauss_legendre
+from integrals.sampling import Sampling
 from shading import direction, fiber_direction, fiber_root, reflect, visible_normal
 
 AXES = (ALPHA, THETA_F)
@@ -60,12 +61,25 @@ def monte_carlo(
     return mean_estimate(jax.vmap(jax.vmap(goes_down))(points))
 
 
-R = Integral(
+# 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/integrals/test_r.py); lower α takes 96².
+_NODES, _NODES_LOW_ALPHA, _LOW_ALPHA = 32, 96, 0.15
+
+
+def _nodes_at(points: np.ndarray) -> dict[str, int]:
+    low = np.min(points[:, 0]) < _LOW_ALPHA
+    return {"nodes": _NODES_LOW_ALPHA if low else _NODES}
+
+
+R = Reference(
     name="r",
     symbol="R",
     meaning="cosine-weighted average of P_s over the hemisphere of lights",
     definition="(1/π) ∫_Ω P_s(u) (u·n) dω_u",
     axes=AXES,
+    # R is smooth in its two variables, and each value is a quadrature: few points, no climbing.
+    sampling=Sampling(fitted=11, checked=10, judged=12, climbs=False, verified=1 << 12),
+    batch=64,
+    options_at=_nodes_at,
     quadrature=quadrature,
     monte_carlo=monte_carlo,
 )

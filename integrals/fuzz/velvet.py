@@ -10,12 +10,15 @@ import numpy as np
 from jax import Array
 
 from integrals.monte_carlo import Sequence, mean_estimate, unit_points
-from integrals.reference import Axis, Estimate, Integral, leg
+from integrals.reference import Axis, Estimate, Reference, leg
 from integrals.rules.interval import checked_rule, gauss_legendre
+from integrals.sampling import Sampling
 from shading import direction, half_vector, velvet_lobe
 from shading.types import Scalar
 
-ASYMMETRY = Axis("asymmetry", "k", "1", -1.0, 0.0, "asymmetry of Schlick's lobe", open_below=True)
+ASYMMETRY = Axis(
+    "asymmetry", "k", "1", -1.0, 0.0, "asymmetry of Schlick's lobe", open_below=True, alias="k"
+)
 AXES = (ASYMMETRY,)
 
 # The closed form cancels as k → 0; below this |k| the power series takes over.
@@ -130,12 +133,13 @@ def monte_carlo(
     return Estimate(1 / mean, error / mean**2)
 
 
-VELVET = Integral(
+VELVET = Reference(
     name="velvet",
     symbol="r",
     meaning="largest factor of the velvet phase function that creates no energy",
     definition="1 / max_u ∫ p_Schlick(k, −sin(t, h)) dω_v",
     axes=AXES,
+    sampling=Sampling(fitted=11, checked=13, judged=16),
     closed_form=closed_form,
     quadrature=quadrature,
     monte_carlo=monte_carlo,
