@@ -30,7 +30,7 @@ def solver(step, steps: int):
 
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("factor", [1.0, 1.5, 10.0])
-def test_it_finds_the_positive_root_from_above(factor, step):
+def test_finds_the_positive_root_from_above(factor, step):
     (root, r, s), (a, e, m) = known_cubics(0, 5000)
     # A start of ten times the root takes some steps more before convergence turns quadratic.
     found = solver(step, 12)(a, e, m, factor * root)
@@ -54,7 +54,7 @@ def test_convergence_is_quadratic_and_monotone_from_above(step, constant):
         assert np.all(after[significant] <= constant * before[significant] ** 2)
 
 
-def test_newton_from_below_is_above_after_a_step_and_no_further_off():
+def test_newton_from_below_is_above_the_root_after_one_step():
     """What docs/closed-form.md says of a start below the root: 2ε²/(1 − 3ε) is left above it."""
     roots, coefficients = known_cubics(3, 2000)
     for below in (0.1, 0.01):
@@ -64,7 +64,7 @@ def test_newton_from_below_is_above_after_a_step_and_no_further_off():
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_zero_constant_leaves_the_root_of_the_quadratic(step):
+def test_without_a_constant_the_cubic_has_the_root_of_a_quadratic(step):
     a, e = np.array([0.6, -0.6, 0.0]), np.array([1.0, 1.0, 0.4])
     exact = -a / 2 + np.sqrt(a * a / 4 + e)
     found = solver(step, 6)(a, e, np.zeros(3), 1.2 * exact)
@@ -72,7 +72,7 @@ def test_a_zero_constant_leaves_the_root_of_the_quadratic(step):
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_the_derivative_is_the_implicit_one(step):
+def test_derivative_is_that_of_the_implicit_equation(step):
     roots, coefficients = known_cubics(2, 200)
     simple = (roots[0] > 0.05) & (roots[1] + roots[2] > 0)
     points = np.stack([c[simple] for c in coefficients])
@@ -90,7 +90,7 @@ def test_the_derivative_is_the_implicit_one(step):
         np.testing.assert_allclose(gradient[axis], upper, rtol=1e-6, atol=1e-9 / width.min() * 1e-6)
 
 
-def test_a_floor_only_raises_and_keeps_the_values_own_derivative():
+def test_at_least_keeps_the_derivative_of_the_value():
     x = np.array([-1.0, 0.5, 1.0, 2.0])
     np.testing.assert_array_equal(at_least(jnp.array(x), 1.0), np.maximum(x, 1))
     for value in x:
@@ -99,7 +99,7 @@ def test_a_floor_only_raises_and_keeps_the_values_own_derivative():
         assert jax.jacfwd(at_least)(jnp.array(value), 1.0) == 1
 
 
-def test_a_magnitude_has_the_values_own_derivative():
+def test_magnitude_keeps_the_derivative_of_the_value():
     x = np.array([-1e-30, -0.0, 0.0, 2.0])
     np.testing.assert_array_equal(magnitude(jnp.array(x)), np.abs(x))
     for value in x:

@@ -54,17 +54,17 @@ def test_each_leg_is_within_its_stated_error(leg):
     assert np.all(distance(value, exact()) <= error)
 
 
-def test_the_closed_form_keeps_full_relative_precision():
+def test_closed_form_has_full_relative_precision():
     value, _ = evaluator("closed_form")(*points())
     assert np.all(distance(value, exact()) <= RELATIVE * np.array(exact()).astype(float))
 
 
-def test_the_quadrature_states_an_error_that_is_of_use():
+def test_stated_error_of_the_quadrature_is_small():
     _, error = evaluator("quadrature")(*points())
     assert np.all(error < 1e-11)
 
 
-def test_a_coarse_quadrature_says_so():
+def test_stated_error_holds_for_a_coarse_quadrature():
     for step in (1 / 2, 1 / 3, 1 / 4):
         value, error = jax.jit(jax.vmap(functools.partial(G.quadrature, step=step)))(*points())
         miss = distance(value, exact())
@@ -89,21 +89,21 @@ def test_limits(leg):
 
 
 @pytest.mark.parametrize("leg", LEGS)
-def test_the_corner_without_a_limit_has_no_value(leg):
+def test_corner_without_a_limit_is_nan(leg):
     """Towards d = ν = 0 with d = xν, G tends to 1 − e^(−x): to anything in [0, 1]."""
     value, error = evaluator(leg)(*np.zeros((2, 1)))
     assert np.isnan(value).all()
     assert np.isnan(error).all()
 
 
-def test_on_the_way_to_the_corner_the_value_is_that_of_the_way():
+def test_limit_at_the_corner_depends_on_the_direction():
     ways = np.array([1e-3, 0.1, 1.0, 10.0])
     value, _ = evaluator("closed_form")(1e-12 * ways, np.full(4, 1e-12))
     np.testing.assert_allclose(value, -np.expm1(-ways), atol=1e-10)
 
 
 @pytest.mark.parametrize("leg", LEGS)
-def test_the_slope_at_grazing_views_is_minus_infinity(leg):
+def test_slope_at_grazing_views_is_minus_infinity(leg):
     """G = 1 + ν ln ν + O(ν): every leg says that its derivative in ν has no finite value."""
     by_density, by_cosine = gradient(leg)(np.array([1e-6, 0.5, 20.0]), np.zeros(3))
     np.testing.assert_array_equal(by_cosine, -np.inf)
@@ -116,7 +116,7 @@ def test_the_slope_at_grazing_views_is_minus_infinity(leg):
     assert forward(0.5, 0.0) == (0, -np.inf)
 
 
-def test_the_slope_at_grazing_views_grows_like_the_logarithm():
+def test_slope_near_grazing_views_is_logarithmic():
     nu = np.array([1e-6, 1e-9, 1e-12])
     slope = gradient("closed_form")(np.full(3, 0.5), nu)[1]
     np.testing.assert_allclose(np.diff(slope) / np.diff(np.log(nu)), 1, rtol=1e-4)
@@ -133,7 +133,7 @@ def test_derivatives_are_finite_on_the_closed_domain(leg, mode):
 
 
 @pytest.mark.parametrize("leg", LEGS)
-def test_derivatives_are_those_of_finite_differences(leg):
+def test_derivatives_equal_finite_differences(leg):
     rng = np.random.default_rng(1)
     d, nu = 10 ** rng.uniform([-6, -6], [1, 0], (50 if leg == "monte_carlo" else 200, 2)).T
     sample = np.stack([np.append(d, [0.0, 0.0, 0.3]), np.append(nu, [0.2, 1.0, 1.0])])
@@ -152,7 +152,7 @@ def test_derivatives_are_those_of_finite_differences(leg):
         assert np.all(abs(derivatives[axis] - expected) <= allowed)
 
 
-def test_gradients_match_the_exact_ones():
+def test_gradients_equal_exact_derivatives():
     """Against derivatives of the 50-digit value, where differences of float64 lose digits."""
     sample = np.array([[1e-9, 0.3], [1e-6, 1e-9], [0.4, 0.7], [30.0, 1e-4], [1e-3, 1.0]]).T
     by_density, by_cosine = gradient("closed_form")(*sample)
@@ -206,7 +206,7 @@ def truncated_average(exponent_cosine, cutoff: float) -> float:
     return float(np.sum(weights[:, None] / 2 * kernel) / nodes)
 
 
-def test_the_printed_exponent_diverges_and_the_corrected_one_does_not():
+def test_printed_exponent_diverges_and_corrected_one_converges():
     """(u·v)(v·n) is negative for lights behind the view: e^(1/|u·v|) has no integral."""
     cutoffs = (0.2, 0.1, 0.05, 0.025)
     printed = [truncated_average(lambda cos_u, cos_uv: cos_uv, cutoff) for cutoff in cutoffs]

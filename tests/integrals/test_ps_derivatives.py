@@ -65,7 +65,7 @@ def test_first_derivatives_of_the_closed_form_are_finite(mode):
 
 
 @pytest.mark.parametrize("mode", [jax.grad, pytest.param(jax.jacfwd, marks=pytest.mark.slow)])
-def test_derivatives_of_the_quadrature_are_those_of_the_closed_form(mode):
+def test_derivatives_of_quadrature_and_closed_form_agree(mode):
     """Each differentiates its own formula; they meet in every corner."""
     points = np.concatenate([corners(0.3, 1.0)[:, ::4], awkward_points(1, 60, 0.3)], axis=1)
     quadrature = gradient("quadrature", mode, nodes=NODES)
@@ -82,13 +82,13 @@ def differences(function, points):
     )
 
 
-def test_first_derivatives_are_those_of_finite_differences():
+def test_first_derivatives_equal_finite_differences():
     points = np.concatenate([corners(0.15, 0.5, 1.0), awkward_points(2, 2000, 0.15)], axis=1)
     miss = gradient("closed_form", jax.grad)(points) - differences(closed_form(), points)
     assert np.all(abs(miss) < DIFFERENCES / points[0] ** 2)
 
 
-def test_first_derivatives_of_the_quadrature_are_those_of_its_finite_differences():
+def test_first_derivatives_of_the_quadrature_equal_finite_differences():
     points = np.concatenate([corners(0.3, 1.0)[:, ::29], awkward_points(3, 14, 0.3)], axis=1)
     evaluate = batched(functools.partial(PS.quadrature, nodes=NODES), 8)
     expected = differences(lambda points: evaluate(*points).value, points)
@@ -96,7 +96,7 @@ def test_first_derivatives_of_the_quadrature_are_those_of_its_finite_differences
     assert np.all(abs(miss) < DIFFERENCES / points[0] ** 2)
 
 
-def test_second_derivatives_are_finite_symmetric_and_those_of_finite_differences():
+def test_second_derivatives_are_finite_and_equal_finite_differences():
     resolved = np.concatenate([corners(0.15, 1.0)[:, ::3], awkward_points(4, 300, 0.15)], axis=1)
     points = np.concatenate([resolved, corners(1e-3, 0.5)[:, ::2]], axis=1)
     second = hessian()(points)
@@ -110,7 +110,7 @@ def test_second_derivatives_are_finite_symmetric_and_those_of_finite_differences
     assert np.all(abs(miss) < 10 * DIFFERENCES / resolved[0] ** 3)
 
 
-def test_derivatives_with_respect_to_any_matrix_and_light_are_finite_and_right():
+def test_derivatives_of_the_sggx_closed_form_are_exact():
     """The fibre's closed form differentiates another formula; directions keep their length."""
     points = corners(0.15, 0.5, 1.0)
 
@@ -123,7 +123,7 @@ def test_derivatives_with_respect_to_any_matrix_and_light_are_finite_and_right()
     np.testing.assert_allclose(derivatives, expected, rtol=0, atol=1e-11)
 
 
-def test_monte_carlo_counts_refuse_to_be_differentiated():
+def test_monte_carlo_has_no_derivative():
     def count(alpha):
         return PS.monte_carlo(alpha, 0.5, 0.5, 0.5, samples=64).value
 

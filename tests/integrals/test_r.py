@@ -41,7 +41,7 @@ def points(seed, count, least_alpha) -> np.ndarray:
     return np.stack([alpha, RIGHT * theta])
 
 
-def test_the_upright_fibre_has_a_closed_form():
+def test_upright_fibre_equals_its_closed_form():
     """Over all α: R = atan2(s (1 + α²), 1 + α² + 2α⁴)/s with s = 2α √(1 − α²)."""
     alpha = np.append(np.exp(np.random.default_rng(0).uniform(np.log(1e-3), 0, 47)), 1.0)
     value, error = quadrature()(alpha, np.zeros_like(alpha))
@@ -51,7 +51,7 @@ def test_the_upright_fibre_has_a_closed_form():
 
 
 @pytest.mark.parametrize("nodes", [24, 96])
-def test_the_quadrature_is_within_its_stated_error(nodes):
+def test_quadrature_is_within_its_stated_error(nodes):
     sample = np.concatenate([points(1, 16, least) for least in (0.15, 0.02, 1e-3)], axis=1)
     value, error = quadrature(nodes=nodes)(*sample)
     truth, finer = quadrature(nodes=320)(*sample)
@@ -60,13 +60,13 @@ def test_the_quadrature_is_within_its_stated_error(nodes):
     assert np.all(finer <= 0.25 * error + 1e-12)
 
 
-def test_the_stated_error_is_of_use():
+def test_stated_error_is_small():
     _, error = quadrature()(*points(2, 24, 0.15))
     assert np.all(error < 1e-12)
 
 
 @pytest.mark.parametrize("point", [(0.4, 0.7)])
-def test_the_definition_nested_in_itself_agrees(point):
+def test_agrees_with_nested_quadrature_of_the_definition(point):
     """The average of P_s by quadrature of the phase function: no closed form takes part."""
     alpha, theta_f = point
 
@@ -98,7 +98,7 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
     assert np.all(error < 5e-3)
 
 
-def test_the_rule_averages_with_the_cosine():
+def test_average_over_lights_is_exact_for_powers_of_the_cosine():
     """∫ (u·n)^k cos²φ (u·n) dω / π = 1/(k + 2)."""
     for power in (0, 1, 5):
         value = average_over_lights(
@@ -112,7 +112,7 @@ def corners() -> np.ndarray:
     return np.array([(alpha, theta) for alpha in (0.15, 0.5, 1.0) for theta in ends]).T
 
 
-def test_derivatives_are_finite_and_those_of_finite_differences():
+def test_derivatives_are_finite_and_equal_finite_differences():
     sample = np.concatenate([corners(), points(4, 22, 0.15)], axis=1)
     derivatives = gradient(jax.grad)(*sample)
     forward = gradient(jax.jacfwd)(*sample)
@@ -133,7 +133,7 @@ def test_derivatives_are_finite_for_small_alpha():
     assert np.isfinite(gradient(jax.grad)(*sample)).all()
 
 
-def test_the_average_is_even_about_upright_and_lying_fibres():
+def test_slope_is_zero_for_upright_and_lying_fibres():
     alpha = np.array([0.15, 0.5, 0.15, 0.5])
     slope = gradient(jax.grad)(alpha, np.array([0.0, 0.0, RIGHT, RIGHT]))[1]
     np.testing.assert_allclose(slope, 0, atol=1e-13)
@@ -148,7 +148,7 @@ def test_second_derivatives_are_finite():
     np.testing.assert_allclose(second, second.swapaxes(1, 2), rtol=1e-10, atol=1e-10)
 
 
-def test_monte_carlo_counts_refuse_to_be_differentiated():
+def test_monte_carlo_has_no_derivative():
     def count(alpha):
         return R.monte_carlo(alpha, 0.5, samples=64).value
 

@@ -12,7 +12,7 @@ from tests.integrals.problems import RIGHT
 UNIT = 4 * np.finfo(float).eps
 
 
-def test_directions_are_unit_vectors_in_the_frame_of_the_fibre():
+def test_directions_are_unit_vectors_with_the_given_angles():
     theta, phi = np.random.default_rng(0).uniform(0, np.pi, (2, 100))
     vectors = jax.vmap(direction)(theta, phi)
     np.testing.assert_allclose(jnp.linalg.norm(vectors, axis=1), 1, atol=UNIT)
@@ -22,7 +22,7 @@ def test_directions_are_unit_vectors_in_the_frame_of_the_fibre():
     np.testing.assert_allclose(fiber_direction(RIGHT), [1, 0, 0], atol=UNIT)
 
 
-def test_cosines_are_those_of_the_vectors():
+def test_direction_cosines_match_the_vectors():
     theta_f, theta, phi = np.random.default_rng(2).uniform(0, np.pi, (3, 100))
     cosines = jax.vmap(direction_cosines)(theta_f, theta, np.cos(phi))
     u, t = jax.vmap(direction)(theta, phi), jax.vmap(fiber_direction)(theta_f)
@@ -30,7 +30,7 @@ def test_cosines_are_those_of_the_vectors():
     np.testing.assert_allclose(jnp.stack(cosines), jnp.stack(expected), atol=UNIT)
 
 
-def test_the_sine_between_directions_keeps_its_relative_precision():
+def test_sin2_between_has_full_relative_precision():
     rng = np.random.default_rng(1)
     for scale in (1.0, 1e-3, 1e-7, 1e-11):
         for opposite in (False, True):

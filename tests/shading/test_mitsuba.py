@@ -71,7 +71,7 @@ def rounded(matrix) -> np.ndarray:
     return np.asarray(matrix, np.float32).astype(float)
 
 
-def test_the_general_phase_function_agrees():
+def test_phase_function_of_random_matrices_agrees():
     rng = np.random.default_rng(0)
     ours, theirs = [], []
     for _ in range(100):
@@ -85,7 +85,7 @@ def test_the_general_phase_function_agrees():
     np.testing.assert_allclose(theirs, values, rtol=FLOAT32)
 
 
-def test_the_fibres_phase_function_agrees():
+def test_phase_function_of_fibres_agrees():
     fiber, light = np.asarray(fiber_direction(0.9)), np.asarray(direction(0.5, 0.3))
     root = np.asarray(fiber_root(fiber, 0.5))
     for theta, phi in ((0.2, 1.0), (1.2, -2.0), (2.5, 0.4)):
@@ -95,7 +95,7 @@ def test_the_fibres_phase_function_agrees():
 
 
 @pytest.mark.parametrize("theta_u", [0.3, 1.4])
-def test_samples_fall_where_ours_do(theta_u):
+def test_samples_have_the_same_moments(theta_u):
     """Means of the drawn directions and of their squares, within five standard errors."""
     light = np.asarray(direction(theta_u, 0.7))
     root = np.asarray(fiber_root(fiber_direction(0.9), 0.4))
@@ -113,7 +113,7 @@ def test_samples_fall_where_ours_do(theta_u):
     assert np.median(np.abs(density / expected - 1)) < 5 * FLOAT32
 
 
-def test_p_s_is_what_its_samples_say():
+def test_ps_agrees_with_the_samples_of_mitsuba():
     points = np.array(
         [
             (0.2, 0.4, 0.3, 1.0),

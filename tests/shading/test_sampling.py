@@ -62,14 +62,14 @@ def chance(views, density) -> float:
 
 @pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("name", ROOTS)
-def test_reflections_follow_the_phase_function(name, light):
+def test_samples_follow_the_phase_function(name, light):
     root, u = ROOTS[name], LIGHTS[light]
     views = np.asarray(_sample(root, u, np.random.default_rng(7).random((POINTS, 2))))
     np.testing.assert_allclose(np.linalg.norm(views, axis=1), 1, rtol=1e-13)
     assert chance(views, lambda v: _density(root, u, v)) > REJECTION
 
 
-def test_a_wrong_density_is_noticed():
+def test_a_wrong_density_is_rejected():
     u, points = LIGHTS["high"], np.random.default_rng(7).random((POINTS, 2))
     views = np.asarray(_sample(fiber_root(fiber_direction(0.9), 0.33), u, points))
     assert chance(views, lambda v: _density(ROOTS["fibre 0.3"], u, v)) < 1e-9
@@ -77,7 +77,7 @@ def test_a_wrong_density_is_noticed():
     assert chance(sides, lambda v: _density(ROOTS["fibre 0.3"], u, v)) < 1e-9
 
 
-def test_samples_are_differentiable_in_the_light():
+def test_samples_are_differentiable_with_respect_to_the_light():
     light = jnp.asarray(LIGHTS["high"])
     moved = jax.jit(jax.jacfwd(lambda u: sample_phase_function(_GENERAL, u, jnp.array([0.3, 0.7]))))
     assert np.isfinite(moved(light)).all()

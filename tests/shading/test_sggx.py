@@ -75,20 +75,20 @@ def over_sphere(function, axis, upper):
 
 @pytest.mark.parametrize("name", MATRICES)
 @pytest.mark.parametrize("light", range(len(LIGHTS)))
-def test_the_phase_function_integrates_to_one_over_the_sphere(name, light):
+def test_phase_function_integrates_to_one(name, light):
     u = LIGHTS[light]
     total = over_sphere(lambda v: PHASE(MATRICES[name], u, v), u, np.pi)
     assert abs(total - 1) < 10 * RULE_TOLERANCE
 
 
 @pytest.mark.parametrize("name", MATRICES)
-def test_the_projected_area_is_that_of_the_normals_in_sight(name):
+def test_projected_area_is_the_integral_over_visible_normals(name):
     u, matrix = LIGHTS[1], MATRICES[name]
     area = over_sphere(lambda h: DISTRIBUTION(matrix, h) * (h @ u), u, np.pi / 2)
     assert abs(area - projected_area(matrix, u)) < 10 * RULE_TOLERANCE
 
 
-def test_the_phase_function_is_reciprocal_up_to_the_projected_area():
+def test_phase_function_times_projected_area_is_reciprocal():
     u, v = LIGHTS[1], LIGHTS[2]
     for matrix in MATRICES.values():
         there = phase_function(matrix, u, v) * projected_area(matrix, u)
@@ -96,7 +96,7 @@ def test_the_phase_function_is_reciprocal_up_to_the_projected_area():
         np.testing.assert_allclose(there, back, rtol=1e-14)
 
 
-def test_the_fibre_is_a_case_of_the_general_matrix():
+def test_fiber_functions_equal_the_general_ones():
     rng = np.random.default_rng(3)
     for alpha, theta_f in zip(rng.uniform(0.05, 1, 20), rng.uniform(0, np.pi / 2, 20), strict=True):
         fiber, h = fiber_direction(theta_f), np.asarray(direction(*rng.uniform(0, 3, 2)))
@@ -114,13 +114,13 @@ def test_the_fibre_is_a_case_of_the_general_matrix():
         )
 
 
-def test_the_root_of_a_fibre_keeps_the_smallest_alpha():
+def test_fiber_root_keeps_a_small_alpha_exactly():
     for alpha in (1e-3, 1e-9, 1e-15):
         fiber = fiber_direction(0.0)
         assert float(fiber @ fiber_root(fiber, alpha) @ fiber) == alpha
 
 
-def test_a_reflection_is_one():
+def test_reflect_is_a_reflection():
     normals = np.random.default_rng(4).normal(size=(50, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     u = LIGHTS[1]
@@ -173,14 +173,14 @@ def test_visible_normals_follow_their_density(name, light):
     assert chi_square(matrix, u, normals) > REJECTION
 
 
-def test_any_root_of_the_matrix_samples_the_same_density():
+def test_any_square_root_gives_the_same_density():
     fiber, alpha, u = fiber_direction(0.9), 0.3, LIGHTS[1]
     points = np.random.default_rng(6).random((100_000, 2))
     normals = jax.vmap(visible_normal, (None, None, 0))(fiber_root(fiber, alpha), u, points)
     assert chi_square(MATRICES["fibre 0.3"], u, normals) > REJECTION
 
 
-def test_a_wrong_density_is_noticed():
+def test_a_wrong_density_is_rejected():
     wrong, u = fiber_matrix(fiber_direction(0.9), 0.32), LIGHTS[1]
     points = np.random.default_rng(5).random((100_000, 2))
     normals = SAMPLE(wrong, u, points)
