@@ -1,4 +1,4 @@
-"""Exponential integrals to full relative precision, against mpmath."""
+"""Exponential integrals have full relative precision, compared with mpmath."""
 
 import jax
 import jax.numpy as jnp
@@ -8,9 +8,9 @@ import pytest
 
 from integrals.special.exponential import e1, e2, e3, ein, gamma2
 
-# Near x = 2 the series of Ein cancels against γ + ln x, by a factor of 30 in E₁ and 60 in E₃.
+# Near x = 2 the series of Ein and γ + ln x cancel: E₁ loses a factor of 30, and E₃ of 60.
 SERIES_CANCELLATION = 2e-14
-# Without cancellation: a sum of 26 terms.
+# A sum of 26 terms without cancellation.
 ROUNDING = 2e-15
 
 FUNCTIONS = {

@@ -1,4 +1,4 @@
-"""Sampling: reproducible, unbiased, with honest standard errors that fall as they should."""
+"""Monte Carlo: reproducible, unbiased, and with standard errors that are right."""
 
 import functools
 import inspect
@@ -22,9 +22,9 @@ SEEDS, FEW, MANY = range(24), 1 << 10, 1 << 14
 
 
 def estimates(monkeypatch, name, sequence, samples):
-    """Give values and standard errors (seeds,) of one integral at one point.
+    """Return values and standard errors, (seeds,) each, of one quantity at one point.
 
-    All seeds' points go through one compiled leg, in place of the points that it would draw.
+    The leg is compiled once. The points of each seed replace those that it would draw itself.
     """
     reference, point = REFERENCES[name], POINTS[name]
     dimensions = {"ps": 2, "g": 1, "q": 1, "r": 4, "velvet": 2}[name]
@@ -46,7 +46,7 @@ def test_stated_errors_are_right_and_decrease_at_the_expected_rate(monkeypatch, 
         value, error = estimates(monkeypatch, name, sequence, FEW)
         miss = value - truth
         assert np.all(abs(miss) <= 5 * error)
-        # The root mean square of 24 normal scores is within 1 ± 0.5 but once in 2000 trials.
+        # The root mean square of 24 normal scores is outside 1 ± 0.5 once in 2000 trials.
         assert 0.5 < np.sqrt(np.mean((miss / error) ** 2)) < 1.5
         assert miss.min() < 0 < miss.max()
         first = np.sqrt(np.mean(miss**2))
@@ -55,9 +55,9 @@ def test_stated_errors_are_right_and_decrease_at_the_expected_rate(monkeypatch, 
         assert np.all(abs(miss) <= 5 * error)
         last[sequence] = np.sqrt(np.mean(miss**2))
         rates[sequence] = np.log(last[sequence] / first) / np.log(MANY / FEW)
-    # 24 seeds give a spread to 15% and an exponent over a factor of 16 to 0.08.
+    # 24 seeds give a standard deviation to 15%, and so the exponent over a factor of 16 to 0.08.
     assert abs(rates["random"] + 0.5) < 0.15
-    # Counts of an indicator fall about as N^-(1/2 + 1/2D): D = 2 for P_s, 4 for R.
+    # The error of a count falls about like N^-(1/2 + 1/(2D)), where D is 2 for P_s and 4 for R.
     assert rates["sobol"] < -0.55
     assert last["sobol"] < (0.85 if name == "r" else 0.45) * last["random"]
 
@@ -80,7 +80,8 @@ def test_points_fill_the_unit_cube_evenly(sequence, replicates):
     assert points.max() < 1
     for axis in range(3):
         counts, _ = np.histogram(points[..., axis], 8, (0, 1))
-        # 512 a cell: 5 standard deviations are 106; Sobol' points of 128 have 16 a cell exactly.
+        # 512 points are expected in each interval, and 5 standard deviations are 106. Each Sobol'
+        # sequence of 128 points has exactly 16 in each.
         assert np.all(abs(counts - 512) <= (0 if sequence == "sobol" else 106))
 
 
@@ -101,7 +102,7 @@ def test_impossible_sample_counts_are_refused(samples, sequence, message):
 
 
 def test_unknown_sequence_is_refused_by_name():
-    # Unwrapped of the type checks that the tests add, which would refuse it first.
+    # The type checks that the tests add would refuse it first, so they are removed.
     with pytest.raises(ValueError, match="sequence = 'halton': allowed are 'random' and 'sobol'"):
         inspect.unwrap(unit_points)(64, 2, "halton", 0)
 

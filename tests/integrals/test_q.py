@@ -1,4 +1,4 @@
-"""Q = 2 E₃(d): exact by every leg, with the slope −2 at d = 0."""
+"""Q = 2 E₃(d): every leg is exact, and the slope at d = 0 is −2."""
 
 import functools
 
@@ -12,7 +12,7 @@ from integrals.fuzz.q import average_penetration
 from tests.integrals.differences import difference
 from tests.integrals.problems import distance, exact_q
 
-# E₃'s series cancels by a factor of 60 near d = 2 (tests/test_exponential.py).
+# The series of E₃ loses a factor of 60 near d = 2 (tests/integrals/test_exponential.py).
 RELATIVE = 2e-14
 LEGS = ("closed_form", "quadrature", "monte_carlo")
 
@@ -82,7 +82,7 @@ def test_derivatives_equal_finite_differences(leg):
     def value(x):
         return evaluator(leg)(x[0]).value
 
-    # At d = 0 the second derivative is logarithmic: the stencil's error is of order h ln h.
+    # At d = 0 the second derivative is logarithmic, so the error of the stencil is of order h ln h.
     step = np.where(d > 0, 1e-3 * d, 1e-6)
     expected = difference(value, d[None], 0, step, 0.0, np.inf)
     rounding = np.finfo(float).eps / step
@@ -97,7 +97,7 @@ def test_derivative_is_exact():
 
 
 def test_second_derivative_is_logarithmic_at_zero_density():
-    """Q'' = 2 E₁(d): finite for d > 0, and the truth at d = 0 is +∞."""
+    """Q'' = 2 E₁(d) is finite for d > 0 and +∞ at d = 0."""
     second = jax.jit(jax.vmap(jax.grad(jax.grad(lambda d: Q.closed_form(d).value))))
     d = np.array([1e-9, 0.1, 1.0, 5.0])
     np.testing.assert_allclose(second(d), [2 * float(mp.e1(x)) for x in d], rtol=RELATIVE)

@@ -1,4 +1,4 @@
-"""R: quadrature of the closed form, held to nested quadrature of the definition and to sampling."""
+"""R: its quadrature is compared with nested quadrature of the definition and with Monte Carlo."""
 
 import functools
 
@@ -14,7 +14,7 @@ from tests.integrals.differences import difference
 from tests.integrals.problems import RIGHT, upright_average
 
 EPS = np.finfo(float).eps
-# For derivatives at α ≥ 0.15, where it is as good as the default.
+# Enough nodes for derivatives at α ≥ 0.15.
 NODES = 24
 
 
@@ -56,7 +56,7 @@ def test_quadrature_is_within_its_stated_error(nodes):
     value, error = quadrature(nodes=nodes)(*sample)
     truth, finer = quadrature(nodes=320)(*sample)
     assert np.all(abs(value - truth) <= error + finer)
-    # The judge is finer than what it judges, up to roundings.
+    # The finer rule must be much better than the tested one, up to roundings.
     assert np.all(finer <= 0.25 * error + 1e-12)
 
 
@@ -65,9 +65,20 @@ def test_stated_error_is_small():
     assert np.all(error < 1e-12)
 
 
+def test_values_at_many_points_are_exact_to_2e_8():
+    """`R.values` uses fewer nodes for α ≥ 0.15. The least α is the hardest."""
+    hardest = np.array([(0.15, theta) for theta in np.linspace(0, RIGHT, 17)])
+    assert R.options_at(hardest) == {"nodes": 32}
+    exact = quadrature(nodes=160)(*hardest.T).value
+    np.testing.assert_allclose(R.values(hardest), exact, rtol=0, atol=2e-8)
+    lower = np.concatenate([hardest, [(0.1, 0.7)]])
+    assert R.options_at(lower) == {"nodes": 96}
+    np.testing.assert_allclose(R.values(lower)[:-1], exact, rtol=0, atol=1e-13)
+
+
 @pytest.mark.parametrize("point", [(0.4, 0.7)])
 def test_agrees_with_nested_quadrature_of_the_definition(point):
-    """The average of P_s by quadrature of the phase function: no closed form takes part."""
+    """Average the quadrature of P_s, so that no closed form is used."""
     alpha, theta_f = point
 
     def fraction(theta_u, phi):
@@ -99,7 +110,7 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
 
 
 def test_average_over_lights_is_exact_for_powers_of_the_cosine():
-    """∫ (u·n)^k cos²φ (u·n) dω / π = 1/(k + 2)."""
+    """∫ (u·n)^k cos²φ (u·n) dω_u / π = 1/(k + 2)."""
     for power in (0, 1, 5):
         value = average_over_lights(
             lambda theta, phi, power=power: jnp.cos(theta) ** power * jnp.cos(phi) ** 2, 8
@@ -121,7 +132,7 @@ def test_derivatives_are_finite_and_equal_finite_differences():
     def value(x):
         return quadrature(nodes=NODES)(*x).value
 
-    # Of fourth order in a thousandth of α, and roundings over the step.
+    # The error is of fourth order in step/α, plus roundings over the step.
     step = 1e-3 * sample[0]
     for axis, ends in enumerate([(1e-3, 1.0), (0.0, RIGHT)]):
         expected = difference(value, sample, axis, step, *ends)

@@ -1,4 +1,4 @@
-"""Radiance."""
+"""Integrals of the whole fuzz BRDF over the hemisphere: limits, energy, the ambient model."""
 
 import functools
 
@@ -26,16 +26,16 @@ from shading import (
 from tests.batches import batched
 from tests.integrals.problems import exact_g, exact_q
 
-# What the default rule of the hemisphere promises for α ≥ 0.15, d ≥ 0.01, cosines ≥ 0.1.
+# The error of the default rule for α ≥ 0.15, d ≥ 0.01 and cosines ≥ 0.1.
 RULE = 1e-5
 
+# Light of radiance one from all directions.
 UNIFORM = np.zeros(9)
-
 UNIFORM[0] = np.sqrt(4 * np.pi)
 
 
 def materials(seed, count) -> np.ndarray:
-    """Give (α, θf, d, θ, φ) over the domain that the rule is good for."""
+    """Return random (α, θf, d, θ, φ), shape (5, count), in the domain of the default rule."""
     rng = np.random.default_rng(seed)
     return np.stack(
         [
@@ -49,11 +49,8 @@ def materials(seed, count) -> np.ndarray:
 
 
 layers = batched(layer_response, 8)
-
 bases = batched(base_response, 8)
-
 albedos = batched(layer_albedo, 8)
-
 fractions = batched(PS.value, 8)
 
 
@@ -65,7 +62,7 @@ def test_default_rule_is_as_precise_as_stated():
 
 
 def test_isotropic_fibres_reflect_half_of_g():
-    """With p = 1/4π the layer's radiance in uniform light is G/2."""
+    """With p = 1/4π the radiance of the layer in uniform light is G/2."""
     points = materials(1, 8)
     points[0] = 1.0
     values = layers(*points) @ UNIFORM
@@ -83,7 +80,7 @@ def test_unscattered_light_on_the_base_is_q():
 
 
 def test_layer_albedo_agrees_with_sampled_reflections():
-    """Visible normals, reflections and the density of both, against the rule: five errors."""
+    """Compare the rule with Monte Carlo, within five standard errors."""
 
     def sampled(alpha, theta_f, density, theta_u, phi_u):
         root, light = fiber_root(fiber_direction(theta_f), alpha), direction(theta_u, phi_u)
@@ -103,7 +100,7 @@ def test_layer_albedo_agrees_with_sampled_reflections():
 
 
 def test_layer_and_base_create_no_energy():
-    """White fibres over a white base: the layer, and layer and base, for every light."""
+    """White fibres over a white base never reflect more than arrives, for any light."""
     points = materials(4, 32)
     alpha, theta_f, density, theta_u, phi = points
     passing = np.asarray(penetration_of(np.cos(theta_u), density))

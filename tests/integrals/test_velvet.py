@@ -1,4 +1,4 @@
-"""r(k): three legs, the proof's consequences, and a fit that never creates energy."""
+"""r(k): its three legs, and the theorem that light across the fibre has the most energy."""
 
 import functools
 
@@ -20,7 +20,7 @@ SLOPE = jax.jit(jax.vmap(jax.grad(VELVET.value)))
 
 
 def exact_norm(k) -> mp.mpf:
-    """Give 1/r by quadrature of its one-dimensional integral, in 30 digits."""
+    """Return 1/r with 30 digits, by quadrature of its one-dimensional integral."""
     with mp.workdps(30):
         x = -mp.mpf(float(k))
         ridge = mp.sqrt(1 - x) if x > 0.5 else mp.mpf(1) / 2
@@ -33,7 +33,7 @@ def exact_norm(k) -> mp.mpf:
 
 
 def asymmetries(seed, count) -> np.ndarray:
-    """Give k bunched at both ends of (−1, 0] and at the seam of the closed form."""
+    """Return k near both ends of (−1, 0] and near −0.25, where the series takes over."""
     rng = np.random.default_rng(seed)
     kinds = [-(10.0 ** rng.uniform(-12, 0, count)), -1 + 10 ** rng.uniform(-9, 0, count)]
     kinds += [-rng.uniform(0.24, 0.26, count), np.array([0.0, -0.25, -0.95])]
@@ -71,7 +71,7 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
 
 
 def test_known_values():
-    """Isotropic scattering; and −1 < k → −1, where the lobe is a ring that only s/4 tames."""
+    """r = 1 for isotropic scattering, and r → s/4 as k → −1, where s = √(1 − k²)."""
     assert VALUE(np.array([0.0])) == 1
     for gap in (1e-8, 1e-12):
         s = np.sqrt(gap * (2 - gap))
@@ -81,7 +81,7 @@ def test_known_values():
 
 
 def test_no_light_direction_gains_energy():
-    """The theorem that r stands on: the energy falls from u·t = 0 to u·t = 1."""
+    """The energy decreases from u·t = 0 to u·t = 1, as docs/brdf.md proves."""
     k = np.array([-1e-3, -0.1, -0.5, -0.8, -0.95, -0.99])
     cosines = np.concatenate([[0.0, 1e-9], np.linspace(1e-3, 1, 60)])
     kept = np.asarray(energies()(k, cosines) * VALUE(k)[:, None])
@@ -111,7 +111,7 @@ def test_printed_sign_would_create_energy():
         return 4 * np.sum(weights * sine * lobe * mean)
 
     assert printed(-0.5, True) > 1.1 * printed(-0.5, False)
-    # The same with the sign of k turned is what is meant.
+    # With the sign of k reversed, the printed formula is the right one.
     np.testing.assert_allclose(printed(0.5, False), 1 / VALUE(np.array([-0.5])), rtol=1e-12)
     assert printed(0.5, True) < printed(0.5, False)
 
@@ -129,7 +129,7 @@ def test_derivatives_are_finite_and_equal_finite_differences():
 
 
 def test_series_has_positive_coefficients_that_grow_slowly():
-    """What the certificate's remainder rests on."""
+    """The proof that a fit creates no energy bounds the remainder of the series by this."""
     a = series_coefficients(200)
     n = np.arange(199)
     assert a[0] == 1

@@ -1,4 +1,4 @@
-"""Fit."""
+"""The fit of r(k), which never creates energy, and its shader code."""
 
 import functools
 
@@ -52,7 +52,7 @@ def test_table_and_float32_code_create_no_energy():
     (exported,) = functions_of(table)
     k = (-DOMAIN_END * np.random.default_rng(4).random(100_000)).astype(np.float32)
     values = np.ravel(evaluate(trace(exported), k[:, None], np.float32))
-    # Rounding alone may exceed it, by less than the last bit of one.
+    # Rounding may exceed the limit by less than the last bit of one.
     assert np.max(values / np.asarray(VALUE(k.astype(float)))) <= 1 + 2 * np.finfo(np.float32).eps
 
 

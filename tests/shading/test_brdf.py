@@ -1,4 +1,4 @@
-"""The fuzz BRDF."""
+"""The fuzz BRDF: layer, base, parameters, and the deferred version."""
 
 import jax
 import jax.numpy as jnp
@@ -97,10 +97,10 @@ def test_deferred_radiance_blends_lambert_and_fuzz():
 
 
 def test_grazing_view_gains_a_little_energy_in_uniform_light():
-    """Where the model does break energy: p is normalised over views, not over lights.
+    """The model creates a little energy here, because p is normalised over views, not lights.
 
-    At a grazing view g = 1, and the layer's radiance is ∫ p(u, v) dω_u: the mean of σ(v)/σ(u) over
-    reflections of v, as p(u, v) σ(u) = p(v, u) σ(v).
+    At a grazing view g = 1, and the radiance of the layer is ∫ p(u, v) dω_u. This is the mean of
+    σ(v)/σ(u) over reflections u of v, because p(u, v) σ(u) = p(v, u) σ(v).
     """
     alpha, fiber, view = 0.075, fiber_direction(0.74), direction(np.pi / 2, np.pi)
     root = fiber_root(fiber, alpha)

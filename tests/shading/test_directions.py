@@ -1,4 +1,4 @@
-"""Unit vectors, and angles between them where cosines round to one."""
+"""Unit vectors, and the sine of the angle between them where the cosine rounds to one."""
 
 import jax
 import jax.numpy as jnp
@@ -8,7 +8,7 @@ import numpy as np
 from shading import direction, direction_cosines, fiber_direction, sin2_between
 from tests.integrals.problems import RIGHT
 
-# Vectors of three roundings each, of sines and cosines.
+# Each component has about three roundings.
 UNIT = 4 * np.finfo(float).eps
 
 
@@ -41,6 +41,6 @@ def test_sin2_between_has_full_relative_precision():
             with mp.workdps(50):
                 cosine = mp.cos(a) * mp.cos(b) + mp.sin(a) * mp.sin(b) * mp.cos(p)
                 exact = 1 - cosine**2
-            # Opposite directions are apart by π − θa − θb, which holds the roundings of π.
+            # The angle between opposite directions is π − θa − θb, so the rounding of π counts.
             allowed = 1e-14 + 4e-16 / scale * opposite
             assert abs(float(sin2_between(theta_a, theta_b, phi)) / exact - 1) < allowed

@@ -1,4 +1,4 @@
-"""Harmonics."""
+"""Spherical harmonics are orthonormal, and their integrals over hemispheres are exact."""
 
 import jax
 import numpy as np
@@ -15,7 +15,7 @@ from shading import (
 def test_harmonics_are_orthonormal_and_integrate_over_hemispheres():
     directions, weights = hemisphere_rule()
     values = np.asarray(jax.vmap(harmonics)(directions))
-    # Y(−ω) = ±Y(ω): the other half of the sphere
+    # Y(−ω) = ±Y(ω) gives the integral over the other half of the sphere.
     sign = np.array([1, -1, -1, -1, 1, 1, 1, 1, 1])
     gram = np.einsum("n,ni,nj->ij", weights, values, values)
     np.testing.assert_allclose(gram + gram * np.outer(sign, sign), np.eye(9), atol=1e-12)

@@ -1,4 +1,4 @@
-"""The scattering layer's kernel and penetration, to full precision up to grazing."""
+"""The scattering kernel and the penetration have full precision, also at grazing directions."""
 
 import jax
 import jax.numpy as jnp
@@ -8,7 +8,7 @@ import pytest
 
 from shading import optical_path, penetration, scattering_kernel
 
-# A handful of correctly rounded operations and one exponential.
+# A few correctly rounded operations and one exponential.
 ROUNDING = 2e-15
 
 
@@ -51,7 +51,7 @@ def test_penetration_is_exp_of_minus_the_optical_path(cosine, density, value):
 
 @pytest.mark.parametrize("dtype", [jnp.float32, jnp.float64])
 def test_the_longest_optical_path_lets_no_light_through(dtype):
-    """The longest path lets nothing through in either precision."""
+    """exp(−800) is zero in float32 and float64."""
     longest = optical_path(dtype(1), dtype(1e-30))
     assert longest.dtype == dtype
     assert jnp.exp(-longest) == 0
@@ -60,7 +60,7 @@ def test_the_longest_optical_path_lets_no_light_through(dtype):
 
 def test_kernel_derivatives_are_finite_and_exact():
     gradient = jax.jit(jax.grad(scattering_kernel, (0, 1, 2)))
-    # Of 1e-155 and less, the quotient of two such cosines has a derivative beyond float64.
+    # For cosines of 1e-155 and less, the derivative of their quotient overflows.
     for cos_u in (1e-150, 1e-9, 0.4, 1.0):
         for cos_v in (1e-150, 1e-9, 0.4, 1.0):
             for density in (0.0, 1e-300, 1e-9, 0.3, 1e9):
@@ -73,7 +73,7 @@ def test_kernel_derivatives_are_finite_and_exact():
                 )
                 for i in range(3)
             ]
-            # The cosine of a light far above the view changes g by less than g's own rounding.
+            # Allow for the rounding of g: a cosine may change g by less than that.
             scale = float(exact_kernel(*point)) / np.array(point)
             miss = np.abs(np.array(gradient(*point)) - [float(e) for e in exact])
             assert np.all(miss < 10 * ROUNDING * np.maximum(scale, np.abs(exact).astype(float)))

@@ -1,4 +1,4 @@
-"""Phase functions: normalised as they promise, the right way round, differentiable everywhere."""
+"""Phase functions: normalisation, direction of scattering, derivatives."""
 
 import jax
 import jax.numpy as jnp
@@ -21,12 +21,12 @@ from shading import (
 )
 
 FIBER = np.asarray(fiber_direction(0.6))
-# The velvet lobe has a kink, which costs the adaptive rule some digits.
+# The kink of the velvet lobe costs the adaptive rule some digits.
 KINK_TOLERANCE = 1e-8
 
 
 def over_sphere(function):
-    """Integrate a function of unit vectors (n, 3) over the sphere, adaptively."""
+    """Integrate a function of unit vectors (n, 3) over the sphere by an adaptive rule."""
 
     def integrand(angles):
         return function(directions(*angles.T)) * np.sin(angles[:, 0])
@@ -59,8 +59,8 @@ def test_positive_asymmetry_scatters_forward():
 @pytest.mark.slow
 @pytest.mark.parametrize(("asymmetry", "theta"), [(-0.7, 0.0), (-0.7, 0.9)])
 def test_velvet_lobe_integrates_to_scattered_energy(asymmetry, theta):
-    """The integral over v as it is defined, against the one over h."""
-    light = np.asarray(direction(theta + 0.6, 0.0))  # at the angle theta from the fibre
+    """Compare the integral over v, as defined, with the one over h."""
+    light = np.asarray(direction(theta + 0.6, 0.0))  # at the angle `theta` from the fibre
     phase = jax.jit(jax.vmap(lambda v: velvet_lobe(asymmetry, half_vector(light, v) @ FIBER)))
     total = over_sphere(phase)
     assert abs(total - scattered_energy(asymmetry, np.cos(theta))) < KINK_TOLERANCE
