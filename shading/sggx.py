@@ -1,7 +1,7 @@
 """The SGGX microflake distribution of Heitz et al. (2015) with specular flakes.
 
 A symmetric positive definite matrix S (3, 3) describes the distribution. The normals of the
-microflakes are distributed like the normals of the ellipsoid {x : xᵀS⁻¹x = 1}.
+microflakes are distributed like the normals of the ellipsoid {x : xᵀSx = 1}.
 
 The functions named `fiber_…` are for the special case of a fibre. A fibre with unit direction t and
 projected area α along t has S = I − (1 − α²) t tᵀ.
