@@ -1,7 +1,20 @@
-"""Exact values: each integral with its closed form, quadrature and Monte Carlo, where they exist.
+"""Exact values of shading integrals, each by several independent methods.
 
-The legs of an integral share the model's functions and nothing else, so that each can judge the
-others. All need float64, take scalars, and may be put under `jit`, `vmap` and `grad`.
+A `Reference` is a quantity with its axes and its methods, which are called legs: a closed form,
+quadrature and Monte Carlo, as far as they exist. All legs need float64, take scalars, and work
+under `jax.jit` and `jax.vmap`. The closed form and the quadrature also work under `jax.grad`.
+
+Tests compare the legs with each other, so it matters what they have in common. All legs use the
+functions of `shading` that define the quantity, and the checks in `reference.leg`. Otherwise:
+
+* P_s and Q: the legs share nothing else. Monte Carlo for P_s evaluates no density. It draws visible
+  normals, and tests/shading/test_sggx.py holds these to the density that the quadrature integrates.
+* G: all legs take the limits at d = 0 and ν = 0 from one function (`fuzz.g._with_limits`), so they
+  cannot check each other there. They share nothing else.
+* R: the quadrature averages the closed form of P_s, so it is only as good as that. Monte Carlo does
+  not use it. tests/integrals/test_r.py also averages the quadrature of P_s.
+* r(k), `VELVET`: all legs evaluate the energy for light at a right angle to the fibre, where
+  docs/brdf.md proves it to be largest. `fuzz.velvet.scattered_energy` checks other lights.
 """
 
 from integrals.fuzz.g import G as G

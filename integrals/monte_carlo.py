@@ -1,4 +1,4 @@
-"""Sample points of the unit cube, plain and low-discrepancy, and estimates from them."""
+"""Random and Sobol' points of the unit cube, and estimates of means from them."""
 
 import functools
 from typing import Literal
@@ -12,17 +12,19 @@ from integrals.reference import Estimate
 
 Sequence = Literal["random", "sobol"]
 
-# Independent scramblings whose spread gives the standard error of a Sobol' estimate.
+# A Sobol' estimate averages this many independently scrambled sequences. The standard deviation of
+# their means gives the standard error.
 SCRAMBLINGS = 32
 
 
 @functools.lru_cache(maxsize=8)
 def unit_points(samples: int, dimensions: int, sequence: Sequence, seed: int) -> np.ndarray:
-    """Give points (replicates, n, dimensions) of the unit cube, replicates · n = samples.
+    """Return points (replicates, n, dimensions) of the unit cube, where replicates · n = samples.
 
-    'random' is one replicate of independent draws; 'sobol' is 32 Owen-scrambled Sobol' sequences,
-    independent of one another. The same arguments give the same points. Raises ValueError for a
-    sample count that the sequence cannot have.
+    'random' has one replicate of independent points. 'sobol' has 32 replicates, each an
+    independently Owen-scrambled Sobol' sequence. The same arguments give the same points. Raises
+    ValueError if `samples` does not suit the sequence: 'random' needs at least two, and 'sobol' 32
+    times a power of two.
     """
     if sequence == "random":
         if samples < 2:
@@ -47,9 +49,10 @@ def unit_points(samples: int, dimensions: int, sequence: Sequence, seed: int) ->
 
 
 def mean_estimate(values: Array) -> Estimate:
-    """Give the mean of values (replicates, n) and its standard error.
+    """Return the mean of values (replicates, n) and its standard error.
 
-    With one replicate the draws are independent; with several, the replicates' means are.
+    With one replicate, the single values are independent. With several replicates, only their means
+    are, and the standard error is computed from these.
     """
     independent = values[0] if values.shape[0] == 1 else values.mean(axis=1)
     count = independent.shape[0]
@@ -58,10 +61,10 @@ def mean_estimate(values: Array) -> Estimate:
 
 @jax.custom_jvp
 def indicator(condition: Array) -> Array:
-    """Give 1.0 where `condition` > 0, else 0.0; refuses to be differentiated.
+    """Return 1.0 where `condition` > 0, and 0.0 elsewhere. Its derivative raises TypeError.
 
-    A count of samples is piecewise constant in the parameters: its derivative is zero almost
-    everywhere and says nothing of the integral's.
+    A count of samples is a piecewise constant function of the parameters. Its derivative is zero
+    almost everywhere, and so it is wrong as an estimate of the derivative of the integral.
     """
     return jnp.where(condition > 0, 1.0, 0.0)
 

@@ -1,4 +1,4 @@
-"""The exact values of a quantity: its axes, and independent methods ("legs") that evaluate it."""
+"""A quantity with its axes and the independent methods ("legs") that give its exact values."""
 
 import functools
 import math
@@ -13,13 +13,13 @@ from jax import Array
 
 from integrals.sampling import Sampling
 
-# How points are spread along an axis: evenly; evenly in the logarithm; or as u², u in [0, 1],
-# which puts more of them near the lower end.
+# How points are distributed along an axis: evenly, evenly in the logarithm, or as the squares of
+# evenly distributed numbers, which puts more points near the lower end.
 Scale = Literal["linear", "logarithmic", "square"]
 
 
 class Estimate(NamedTuple):
-    """A value with a bound on its error, or, from Monte Carlo, with its standard error."""
+    """A value and its error: a bound on the error, or for Monte Carlo the standard error."""
 
     value: Array
     error: Array
@@ -30,10 +30,12 @@ Leg = Callable[..., Estimate]
 
 @dataclass(frozen=True)
 class Axis:
-    """One argument of a quantity: its name, symbol, unit ('rad' or '1') and domain.
+    """One argument of a quantity: its name, symbol, unit ('rad' or '1'), domain and meaning.
 
-    `scale` says how points are spread along it. `period` is set for an angle that goes all the way
-    round. `alias` is a second, shorter name of the command line's option.
+    The domain is [`lower`, `upper`], or without `lower` itself if `open_below` is true. `upper` may
+    be infinite. `scale` says how points are distributed along the axis; 'logarithmic' needs
+    `lower` > 0. `period` is set if the quantity is periodic in this argument. `alias` is a second,
+    shorter name for the option on the command line.
     """
 
     name: str
@@ -55,12 +57,12 @@ class Axis:
         return f"{left}{self.lower:.6g}, {right}"
 
     def contains(self, value):
-        """Tell, elementwise, whether `value` lies in the domain; NaN does not."""
+        """Return, for each element of `value`, whether it lies in the domain. NaN does not."""
         above = value > self.lower if self.open_below else value >= self.lower
         return above & (value <= self.upper) & (value < math.inf)
 
     def check(self, value: float) -> float:
-        """Return `value`; raise ValueError if it is not in the domain."""
+        """Return `value`, or raise ValueError if it is outside the domain."""
         if not (math.isfinite(value) and self.contains(value)):
             unit = "" if self.unit == "1" else f" {self.unit}"
             given, domain = f"{self.name} = {value:g}{unit}", f"{self.domain}{unit}"
@@ -68,31 +70,38 @@ class Axis:
         return value
 
     def place(self, fraction: np.ndarray) -> np.ndarray:
-        """Map fractions in [0, 1] of the axis to values, by its scale."""
+        """Map fractions in [0, 1] to values on the axis according to its `scale`.
+
+        0 gives `lower` and 1 gives `upper`, exactly. `upper` must be finite.
+        """
         width = self.upper - self.lower
         if self.scale == "logarithmic":
-            return self.lower * (1 + width / self.lower) ** fraction
-        if self.scale == "square":
-            fraction = fraction**2
-        return self.lower + width * fraction
+            value = self.lower * (1 + width / self.lower) ** fraction
+        elif self.scale == "square":
+            value = self.lower + width * fraction**2
+        else:
+            value = self.lower + width * fraction
+        # Rounding may miss the upper end by one unit in the last place, to either side.
+        return np.where(fraction == 1, self.upper, np.minimum(value, self.upper))
 
 
 def box_of(axes: tuple[Axis, ...]) -> np.ndarray:
-    """Give the lower and upper ends of axes, shape (axes, 2)."""
+    """Return the lower and upper ends of axes as an array (axes, 2)."""
     return np.array([(axis.lower, axis.upper) for axis in axes])
 
 
+# Compared and hashed by identity (eq=False): JAX takes a reference as a static argument.
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """A quantity's exact values: its axes, and the independent legs that evaluate it.
+    """A quantity, its axes, and the independent legs that give its exact values.
 
-    Each leg takes the axes' values in order, scalars in radians where the unit is so, and gives
-    an `Estimate`; a leg that does not exist is None. Every leg gives NaN outside the domain, and
-    where the quantity has no limit (G at d = ν = 0).
+    A leg takes one scalar for each axis, in the order of the axes, and returns an `Estimate`.
+    Angles are in radians. A leg that does not exist is None. Every leg returns NaN outside the
+    domain and where the quantity has no limit (G at d = ν = 0).
 
-    `sampling` says at how many points forms are fitted, checked and judged. `batch` points are
-    evaluated at once. `options_at` gives, for points (n, axes), further arguments of the best leg,
-    such as how many nodes a quadrature rule needs there.
+    `sampling` says how many points forms are fitted on, checked at and judged by. `batch` is the
+    number of points that `estimates` evaluates at once. `options_at` takes points (n, axes) and
+    returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
     """
 
     name: str
@@ -109,7 +118,7 @@ class Reference:
 
     @property
     def legs(self) -> dict[str, Leg]:
-        """The legs that exist, by name, the most exact first."""
+        """The legs that exist, by name, with the most exact one first."""
         every = {
             "closed_form": self.closed_form,
             "quadrature": self.quadrature,
@@ -127,12 +136,12 @@ class Reference:
         return self.legs[self.best_leg](*arguments).value
 
     def estimates(self, points: np.ndarray) -> Estimate:
-        """Evaluate the most exact leg at points (n, axes): values and errors, (n,) each."""
+        """Evaluate the most exact leg at points (n, axes). Returns values and errors, (n,) each."""
         options = tuple(self.options_at(points).items())
         return in_batches(functools.partial(_estimates, self, options), points, self.batch)
 
     def values(self, points: np.ndarray) -> np.ndarray:
-        """Evaluate the most exact leg at points (n, axes): (n,)."""
+        """Evaluate the most exact leg at points (n, axes). Returns the values (n,)."""
         return np.asarray(self.estimates(points).value)
 
 
@@ -143,9 +152,10 @@ def _estimates(reference: Reference, options: tuple[tuple[str, Any], ...], point
 
 
 def in_batches(function: Callable, points: np.ndarray, batch: int):
-    """Apply a function of points (batch, axes) to points (n, axes), so that it is compiled once.
+    """Apply `function` to points (n, axes), with n > 0, in batches of `batch` points.
 
-    The last batch is filled up with its last point. Returns what the function returns, (n, …).
+    All batches have the same size, so that JAX compiles `function` once: the last one is filled
+    with copies of the last point. Returns the arrays that `function` returns, joined to (n, …).
     """
     count = len(points)
     padded = np.concatenate([points, np.repeat(points[-1:], -count % batch, axis=0)])
@@ -154,7 +164,11 @@ def in_batches(function: Callable, points: np.ndarray, batch: int):
 
 
 def leg(*axes: Axis) -> Callable[[Leg], Leg]:
-    """Make a function of the axes' values a leg: float64 only, and NaN outside the domain."""
+    """Return a decorator that makes a function of the axes' values a leg.
+
+    The leg raises RuntimeError without float64, raises ValueError for a wrong number of arguments,
+    and returns NaN outside the domain.
+    """
 
     def decorate(function: Leg) -> Leg:
         @functools.wraps(function)

@@ -1,4 +1,4 @@
-"""How many points a quantity is fitted on, checked at and judged by, and where more are needed."""
+"""How many points forms are fitted on, checked at and judged by, and how errors are weighted."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -12,10 +12,10 @@ def _ones(points: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Measure:
-    """What errors at points (n, axes) count for: two functions of the points, each giving (n,).
+    """The weight of an error at each point: two functions from points (n, axes) to weights (n,).
 
-    `density` weights squared errors in least squares fits. `largest` multiplies an error before
-    the largest one is made least.
+    A least-squares fit multiplies the squared error by `density`. A fit that minimises the largest
+    error multiplies the error by `largest`.
     """
 
     density: Callable[[np.ndarray], np.ndarray] = _ones
@@ -24,15 +24,17 @@ class Measure:
 
 @dataclass(frozen=True)
 class Sampling:
-    """The base-2 logarithms of how many points a quantity's forms meet.
+    """The numbers of points at which the forms of a quantity are evaluated, as base-2 logarithms.
 
-    Forms are `fitted` on 2^fitted points, searched for their largest error at 2^checked points,
-    and judged by 2^judged. Half as many points more lie on the faces of the domain in the first
-    two. `extra` maps points (n, axes) to further points where the quantity is steep.
+    A form is fitted on 2^`fitted` points, its largest error is searched for at 2^`checked` points,
+    and it is judged by 2^`judged` points. Fitting and checking add half as many points on the faces
+    of the domain. `extra` is a function from points (n, axes) to further points in regions where
+    the quantity is steep.
 
-    `climbs` says whether hill climbing looks for larger errors from the worst points; a quantity
-    that is smooth and costly does without. `measures` are the weights that a fit may choose from,
-    by name. `verified` limits the points at which exported code is compared with exact values.
+    If `climbs` is true, hill climbing starts at the worst points and looks for larger errors. This
+    is not worth its time for a quantity that is smooth and expensive. `measures` are the weights
+    that a fit may choose from, by name. `verified` is the largest number of points (not a
+    logarithm) at which exported code is compared with exact values. None means no limit.
     """
 
     fitted: int

@@ -1,7 +1,9 @@
-"""The shading models: pure JAX functions of one point, with no notion of integrals or fits.
+"""The shading models, as pure JAX functions of one point.
 
-Every function takes scalars and vectors of shape (3,), is differentiable, and leaves batching to
-the caller's `jax.vmap`. Directions are unit vectors in a frame whose z axis is the surface normal.
+Every function takes scalars and vectors of shape (3,) and is differentiable. Use `jax.vmap` to
+evaluate many points. Directions are unit vectors in a frame whose z axis is the surface normal.
+Generic models (directions, SGGX, phase functions, spherical harmonics) are in this folder. Each
+topic, such as `fuzz/`, has a folder of its own. Nothing here knows of integrals or fits.
 """
 
 from shading.directions import direction as direction
@@ -22,15 +24,15 @@ from shading.fuzz.layer import optical_path as optical_path
 from shading.fuzz.layer import penetration as penetration
 from shading.fuzz.layer import scattering_kernel as scattering_kernel
 from shading.fuzz.phase import fiber_phase_function as fiber_phase_function
-from shading.fuzz.phase import half_vector as half_vector
-from shading.fuzz.phase import phase_function as phase_function
-from shading.fuzz.phase import schlick_phase_function as schlick_phase_function
 from shading.fuzz.phase import velvet_lobe as velvet_lobe
 from shading.fuzz.phase import velvet_phase_function as velvet_phase_function
 from shading.harmonics import harmonics as harmonics
 from shading.harmonics import irradiance as irradiance
 from shading.harmonics import mean_radiance as mean_radiance
 from shading.harmonics import radiance as radiance
+from shading.phase import half_vector as half_vector
+from shading.phase import phase_function as phase_function
+from shading.phase import schlick_phase_function as schlick_phase_function
 from shading.sampling import sample_phase_function as sample_phase_function
 from shading.sggx import fiber_matrix as fiber_matrix
 from shading.sggx import fiber_normal_distribution as fiber_normal_distribution

@@ -1,4 +1,7 @@
-"""Unit vectors and their cosines from angles, in the frame whose z axis is the surface normal n."""
+"""Unit vectors from angles, and the cosines and sines between them.
+
+The z axis of the frame is the surface normal n. Angles are in radians.
+"""
 
 import jax.numpy as jnp
 from jax import Array
@@ -7,23 +10,24 @@ from shading.types import Scalar
 
 
 def direction(theta: Scalar, phi: Scalar) -> Array:
-    """Give the unit vector of polar angle `theta` and azimuth `phi`, both in radians.
+    """Return the unit vector (3,) of polar angle `theta` and azimuth `phi`, in radians.
 
-    The azimuth is measured from the fibre's, so that the fibre lies in the plane y = 0.
+    The azimuth is zero in the direction of the fibre, so the fibre lies in the plane y = 0.
     """
     sin_theta = jnp.sin(theta)
     return jnp.stack([sin_theta * jnp.cos(phi), sin_theta * jnp.sin(phi), jnp.cos(theta)])
 
 
 def fiber_direction(theta_f: Scalar) -> Array:
-    """Give the fibre direction t = (sin θf, 0, cos θf); θf = 0 is a fibre along the normal."""
+    """Return the fibre direction t = (sin θf, 0, cos θf). At θf = 0 the fibre is the normal."""
     return direction(theta_f, 0.0)
 
 
 def direction_cosines(theta_f: Scalar, theta: Scalar, cos_phi: Scalar) -> tuple[Array, Array]:
-    """Give u·n and u·t of `direction(theta, phi)` and the fibre of polar angle `theta_f`.
+    """Return u·n and u·t for the direction u and the fibre t.
 
-    Both angles are in radians; `cos_phi` is the cosine of the azimuth between u and t.
+    `theta` and `theta_f` are the polar angles of u and t in radians. `cos_phi` is the cosine of
+    the azimuth between them.
     """
     cos_un = jnp.cos(theta)
     in_plane = jnp.sin(theta) * cos_phi * jnp.sin(theta_f)
@@ -31,9 +35,11 @@ def direction_cosines(theta_f: Scalar, theta: Scalar, cos_phi: Scalar) -> tuple[
 
 
 def sin2_between(theta_a: Scalar, theta_b: Scalar, phi: Scalar) -> Array:
-    """Give the squared sine of the angle between two directions whose azimuths differ by `phi`.
+    """Return the squared sine of the angle between two directions.
 
-    From half angles, all in radians: of full relative precision where the cosine rounds to ±1.
+    `theta_a` and `theta_b` are their polar angles and `phi` is the difference of their azimuths,
+    in radians. The formula uses half angles. It keeps full relative precision even where the
+    cosine of the angle rounds to 1 or −1.
     """
     theta_a, theta_b = jnp.asarray(theta_a), jnp.asarray(theta_b)
     sines = jnp.sin(theta_a) * jnp.sin(theta_b)

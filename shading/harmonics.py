@@ -1,8 +1,10 @@
-"""Real spherical harmonics up to second order, the light of the ambient model.
+"""Real spherical harmonics up to order 2, which represent ambient light.
 
-Radiance L(ω) = Σ Lᵢ Yᵢ(ω) has nine coefficients Lᵢ, (9,) or (9, 3) for colours, ordered by band l
-and, within it, by m = −l … l. The integrals over a hemisphere follow from Funk and Hecke's theorem:
-they multiply band l by the integral of its Legendre polynomial.
+The radiance is L(ω) = Σ Lᵢ Yᵢ(ω). Its nine coefficients Lᵢ have the shape (9,), or (9, 3) for
+colours. They are ordered by the band l and, within a band, by m = −l … l.
+
+The integrals over a hemisphere use the Funk–Hecke theorem: an integral against a kernel that
+depends on ω·n only multiplies band l by the integral of the kernel times Legendre's polynomial P_l.
 """
 
 import jax.numpy as jnp
@@ -15,13 +17,13 @@ from shading.types import Vector
 Coefficients = Float[Array | np.ndarray, "9 *channels"]
 
 _BANDS = np.array([0, 1, 1, 1, 2, 2, 2, 2, 2])
-# 2π ∫₀¹ P_l(x) x dx and ∫₀¹ P_l(x) dx for l = 0, 1, 2.
+# For l = 0, 1, 2: 2π ∫₀¹ P_l(x) x dx (irradiance) and ∫₀¹ P_l(x) dx (mean radiance).
 _COSINE = np.array([np.pi, 2 * np.pi / 3, np.pi / 4])[_BANDS]
 _MEAN = np.array([1.0, 0.5, 0.0])[_BANDS]
 
 
 def harmonics(direction: Vector) -> Array:
-    """Give Y₀₀ … Y₂₂ (9,) of a unit vector; they are orthonormal over the sphere."""
+    """Return Y₀₀ … Y₂₂ (9,) of a unit vector. They are orthonormal over the sphere."""
     x, y, z = jnp.asarray(direction)
     flat = jnp.full_like(z, np.sqrt(1 / (4 * np.pi)))
     first = np.sqrt(3 / (4 * np.pi))
@@ -38,15 +40,15 @@ def harmonics(direction: Vector) -> Array:
 
 
 def radiance(light: Coefficients, direction: Vector) -> Array:
-    """Give L(ω), per steradian; negative where the expansion rings."""
+    """Return the radiance L(ω). It is negative where the expansion overshoots."""
     return harmonics(direction) @ light
 
 
 def irradiance(light: Coefficients, normal: Vector) -> Array:
-    """Give E = ∫_Ω L(ω) (ω·n) dω over the hemisphere about the unit vector n."""
+    """Return the irradiance E = ∫_Ω L(ω) (ω·n) dω. Ω is the hemisphere about the unit vector n."""
     return (_COSINE * harmonics(normal)) @ light
 
 
 def mean_radiance(light: Coefficients, normal: Vector) -> Array:
-    """Give (1/2π) ∫_Ω L(ω) dω, the average over the hemisphere about the unit vector n."""
+    """Return (1/2π) ∫_Ω L(ω) dω, the mean over the hemisphere Ω about the unit vector n."""
     return (_MEAN * harmonics(normal)) @ light

@@ -1,8 +1,10 @@
-"""The specular SGGX microflake distribution of Heitz et al. (2015) and its fibre-like case.
+"""The SGGX microflake distribution of Heitz et al. (2015) with specular flakes.
 
-A distribution is a symmetric positive definite matrix S; its microflakes' normals are those of the
-ellipsoid {x : xᵀS⁻¹x = 1}. The fibre of direction t and projected area α along t has
-S = I − (1 − α²) t tᵀ.
+A symmetric positive definite matrix S (3, 3) describes the distribution. The normals of the
+microflakes are distributed like the normals of the ellipsoid {x : xᵀSx = 1}.
+
+The functions named `fiber_…` are for the special case of a fibre. A fibre with unit direction t and
+projected area α along t has S = I − (1 − α²) t tᵀ.
 """
 
 import jax.numpy as jnp
@@ -13,15 +15,16 @@ from shading.types import Matrix, Scalar, Vector
 
 
 def fiber_matrix(fiber: Vector, alpha: Scalar) -> Array:
-    """Give S (3, 3) of a fibre of unit direction `fiber` and projected area `alpha` in (0, 1]."""
+    """Return S (3, 3) of a fibre of unit direction `fiber` and projected area `alpha` in (0, 1]."""
     fiber, alpha = jnp.asarray(fiber), jnp.asarray(alpha)
     return jnp.eye(3) - (1 - alpha) * (1 + alpha) * jnp.outer(fiber, fiber)
 
 
 def fiber_root(fiber: Vector, alpha: Scalar) -> Array:
-    """Give the symmetric root (3, 3) of `fiber_matrix`: I − t tᵀ + α t tᵀ, to full precision in α.
+    """Return the symmetric square root (3, 3) of `fiber_matrix`: I − t tᵀ + α t tᵀ.
 
-    S itself holds α² next to one, and is singular in float64 for α < 1e-8.
+    The root keeps α to full precision. S itself adds α² to numbers of the order of one, and it is
+    singular in float64 for α < 1e-8.
     """
     fiber = jnp.asarray(fiber)
     along = jnp.outer(fiber, fiber)
@@ -29,28 +32,34 @@ def fiber_root(fiber: Vector, alpha: Scalar) -> Array:
 
 
 def projected_area(matrix: Matrix, direction: Vector) -> Array:
-    """Give σ(ω) = √(ωᵀSω), the microflakes' area per volume seen from the unit vector ω."""
+    """Return σ(ω) = √(ωᵀSω), the area of the microflakes as seen from the unit vector ω."""
     direction = jnp.asarray(direction)
     return jnp.sqrt(direction @ matrix @ direction)
 
 
 def normal_distribution(matrix: Matrix, normal: Vector) -> Array:
-    """Give D(h) = 1 / (π √|S| (hᵀS⁻¹h)²) for a unit vector h, per steradian."""
+    """Return the density of normals D(h) = 1 / (π √|S| (hᵀS⁻¹h)²), per steradian.
+
+    `normal` h is a unit vector, and |S| is the determinant of S.
+    """
     normal, (x, y, z) = jnp.asarray(normal), jnp.asarray(matrix)
-    # |S| S⁻¹ by cofactors: under `vmap` over normals a solver would factorise S for each.
+    # Cofactors give |S| S⁻¹. A linear solver under `vmap` would factorise S once for each normal.
     adjugate = jnp.stack([jnp.cross(y, z), jnp.cross(z, x), jnp.cross(x, y)])
     determinant = x @ adjugate[0]
     return determinant**1.5 / (jnp.pi * (normal @ adjugate @ normal) ** 2)
 
 
 def fiber_projected_area(cos_t: Scalar, alpha: Scalar) -> Array:
-    """Give the fibre's σ_F = √(1 − (ω·t)²(1 − α²)) from `cos_t` = ω·t."""
+    """Return the projected area of a fibre, σ_F = √(1 − (ω·t)²(1 − α²)), from `cos_t` = ω·t."""
     alpha = jnp.asarray(alpha)
     return jnp.sqrt(1 - jnp.asarray(cos_t) ** 2 * (1 - alpha) * (1 + alpha))
 
 
 def fiber_normal_distribution(cos_t: Scalar, alpha: Scalar) -> Array:
-    """Give the fibre's D_F = α³ / (π ((h·t)²(1 − α²) + α²)²) from `cos_t` = h·t, per steradian."""
+    """Return the density of a fibre's normals, per steradian, from `cos_t` = h·t.
+
+    D_F = α³ / (π ((h·t)²(1 − α²) + α²)²).
+    """
     alpha = jnp.asarray(alpha)
     return alpha**3 / (
         jnp.pi * (jnp.asarray(cos_t) ** 2 * (1 - alpha) * (1 + alpha) + alpha**2) ** 2
@@ -58,24 +67,27 @@ def fiber_normal_distribution(cos_t: Scalar, alpha: Scalar) -> Array:
 
 
 def reflect(direction: Vector, normal: Vector) -> Array:
-    """Mirror the unit vector `direction` about the unit vector `normal`: 2(ω·m)m − ω."""
+    """Reflect the unit vector ω = `direction` about the unit vector m = `normal`: 2(ω·m)m − ω."""
     direction, normal = jnp.asarray(direction), jnp.asarray(normal)
     return 2 * (direction @ normal) * normal - direction
 
 
 def sample_visible_normal(matrix: Matrix, light: Vector, sample: Float[Array, "2"]) -> Array:
-    """Draw a microflake normal as seen from `light`: density D(m)⟨u·m⟩ / σ(u) per steradian.
+    """Draw a microflake normal m that is visible from the unit vector u = `light`.
 
-    `sample` is uniform in [0, 1)².
+    Its density is D(m) max(u·m, 0) / σ(u) per steradian. `sample` is uniform in [0, 1)². Returns a
+    unit vector (3,).
     """
     return visible_normal(jnp.linalg.cholesky(jnp.asarray(matrix)), light, sample)
 
 
 def visible_normal(root: Matrix, light: Vector, sample: Float[Array, "2"]) -> Array:
-    """Do as `sample_visible_normal` does, for any `root` L (3, 3) of S = LLᵀ.
+    """Draw a visible normal as `sample_visible_normal` does, from a square root of the matrix.
 
-    With m ∝ Lp, the visible p are those of a unit sphere in orthographic projection along Lᵀu,
-    so a uniform point of the disk gives m.
+    `root` L (3, 3) is any matrix with S = LLᵀ. The map p ↦ Lp/|Lp| takes unit vectors p to
+    normals m. The visible normals are those with p·Lᵀu > 0, and their p are uniform over the disk
+    that is the projection of this half sphere along Lᵀu. So the function draws a uniform point of
+    the disk, lifts it to the sphere and maps it by L.
     """
     root = jnp.asarray(root)
     axis = root.T @ jnp.asarray(light)
@@ -92,7 +104,7 @@ def visible_normal(root: Matrix, light: Vector, sample: Float[Array, "2"]) -> Ar
 
 
 def _orthonormal(axis: Array) -> tuple[Array, Array]:
-    """Complete the unit vector `axis` to an orthonormal frame (Duff et al. 2017)."""
+    """Return two unit vectors at right angles to `axis` and to each other (Duff et al. 2017)."""
     x, y, z = axis
     sign = jnp.where(z < 0, -1.0, 1.0)
     a = -1 / (sign + z)

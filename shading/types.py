@@ -1,4 +1,4 @@
-"""Array types that the annotations share."""
+"""Array types for annotations: a scalar, a vector (3,) and a matrix (3, 3)."""
 
 from jax.typing import ArrayLike
 from jaxtyping import Float, Real

@@ -1,4 +1,4 @@
-"""The positive root of the cubic behind P_s, differentiable on the whole closed domain."""
+"""The positive root of the cubic in the closed form of P_s, differentiable on the closed domain."""
 
 import functools
 from collections.abc import Callable
@@ -12,10 +12,11 @@ Step = Callable[[Array, Array, Array, Array], Array]
 
 @jax.custom_jvp
 def at_least(value: Array, bound: Array | float) -> Array:
-    """Raise `value` to `bound` where it is lower; the derivative is always the value's own.
+    """Return the larger of `value` and `bound`, with the derivative of `value` in either case.
 
-    For bounds that are theorems: only rounding brings a value below one, at points where the bound
-    is attained, and there the bound's derivative (or `jnp.maximum`'s mean of both) is wrong.
+    Use it for a bound that is true of the exact value. Then the value is below the bound only
+    because of rounding, at points where the exact value equals the bound. The derivative of the
+    bound would be wrong there, and so would the mean of both that `jnp.maximum` returns.
     """
     return jnp.where(value < bound, bound, value)
 
@@ -27,7 +28,7 @@ def _own_derivative(primals, tangents):
 
 @jax.custom_jvp
 def magnitude(value: Array) -> Array:
-    """Give |value| of what only rounding makes negative; the derivative is the value's own."""
+    """Return |value|, with the derivative of `value`. Use it if only rounding makes it negative."""
     return jnp.abs(value)
 
 
@@ -35,9 +36,10 @@ magnitude.defjvp(lambda primals, tangents: (magnitude(*primals), tangents[0]))
 
 
 def newton_step(root: Array, a: Array, e: Array, m: Array) -> Array:
-    """Follow the tangent of the cubic: of a relative error ε above the root at most 2ε² is left.
+    """Return the next iterate of Newton's method for the cubic f of `positive_root`.
 
-    λ − f/f′ is written as one quotient, whose numerator is a sum of positive terms.
+    A relative error ε > 0 becomes at most 2ε². λ − f/f′ is written as one fraction, whose numerator
+    is a sum of positive terms.
     """
     product = (root + a) * root
     rising = root * root + product
@@ -45,9 +47,10 @@ def newton_step(root: Array, a: Array, e: Array, m: Array) -> Array:
 
 
 def tangent_step(root: Array, a: Array, e: Array, m: Array) -> Array:
-    """Replace λ² in λ·λ² by its tangent 2sλ − s² at s, and solve the quadratic that remains.
+    """Return the next iterate of a method that also converges from a start far above the root.
 
-    Converges quadratically for starts that are far too large, too.
+    It replaces λ² in λ·λ² by its tangent 2sλ − s² at the last iterate s, and solves the quadratic
+    equation that remains. Convergence is quadratic.
     """
     b, d = root + root + a, e + root * root
     return (d + jnp.sqrt(d * d + 4 * b * m)) / (b + b)
@@ -55,11 +58,12 @@ def tangent_step(root: Array, a: Array, e: Array, m: Array) -> Array:
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(4, 5))
 def positive_root(a: Array, e: Array, m: Array, start: Array, step: Step, steps: int) -> Array:
-    """Give the largest root of λ³ + Aλ² − Eλ − m, with one positive root and m ≥ 0.
+    """Return the largest root of f(λ) = λ³ + Aλ² − Eλ − m, where m ≥ 0 and one root is positive.
 
-    Arguments: `a` = A, `e` = E and `m`; `start`, a guess; `step`, one of the above, and how many
-    `steps` are taken. From above the root the iterates of both fall monotonically. The derivative
-    is the implicit one, whatever the start.
+    `a`, `e` and `m` are the coefficients A, E and m. `start` is a guess of the root, `step` is
+    `newton_step` or `tangent_step`, and `steps` is how often it is applied. From a start above the
+    root, the iterates of both decrease towards it. The derivative is that of the implicit equation
+    f = 0, and does not depend on the start.
     """
     root = start
     for _ in range(steps):

@@ -19,9 +19,10 @@ AXES = (ALPHA, THETA_F)
 
 
 def average_over_lights(fraction, nodes: int) -> Array:
-    """Give (1/π) ∫_Ω fraction(θu, φ) (u·n) dω_u of a function that is even in φ.
+    """Return (1/π) ∫_Ω fraction(θu, φ) (u·n) dω_u for a function that is even in φ.
 
-    Gauss–Legendre in cos θu, midpoints in φ on [0, π]: `nodes` of each.
+    `fraction` takes scalars, in radians. The rule has `nodes` Gauss–Legendre nodes in cos θu and
+    `nodes` midpoints in φ on [0, π].
     """
     cosines, weights = gauss_legendre(nodes, 0.0, 1.0)
     azimuths = (np.arange(nodes) + 0.5) * np.pi / nodes
@@ -32,12 +33,16 @@ def average_over_lights(fraction, nodes: int) -> Array:
 
 @leg(*AXES)
 def quadrature(alpha, theta_f, *, nodes: int = 96) -> Estimate:
-    """Integrate the closed form of P_s by `nodes`² points; the error is against (¾ nodes)²."""
+    """Average the closed form of P_s with `nodes`² points.
+
+    The error comes from the difference to the rule with (¾ nodes)² points.
+    """
 
     def fraction(theta_u, phi):
         return fraction_at(alpha, theta_f, theta_u, phi)
 
-    # The second term is for what P_s does within an angle α of the fibre when the nodes miss it.
+    # P_s changes within an angle of α about the fibre. The second term bounds what a rule misses
+    # whose nodes are too far apart for this.
     rounding = 4 * np.finfo(float).eps / alpha + 6 * alpha**2 * jnp.exp(-4 * nodes * alpha)
     return checked_rule(lambda count: average_over_lights(fraction, count), nodes, rounding)
 
@@ -46,9 +51,9 @@ def quadrature(alpha, theta_f, *, nodes: int = 96) -> Estimate:
 def monte_carlo(
     alpha, theta_f, *, samples: int = 1 << 16, sequence: Sequence = "random", seed: int = 0
 ) -> Estimate:
-    """Draw lights with density (u·n)/π, reflect each off a visible normal, and count.
+    """Draw lights with the density (u·n)/π, reflect each about a visible normal, and count.
 
-    Not differentiable.
+    The result is the part of the reflections that goes down. Not differentiable.
     """
     root = fiber_root(fiber_direction(theta_f), alpha)
 
@@ -61,7 +66,8 @@ def monte_carlo(
     return mean_estimate(jax.vmap(jax.vmap(goes_down))(points))
 
 
-# 32² nodes give R to 2e-8 for α ≥ 0.15 (tests/integrals/test_r.py); lower α takes 96².
+# `Reference.estimates` uses 32² nodes where all points have α ≥ 0.15: the error of R is then below
+# 2e-8 (tests/integrals/test_r.py). It uses 96² nodes if any α is lower.
 _NODES, _NODES_LOW_ALPHA, _LOW_ALPHA = 32, 96, 0.15
 
 
@@ -76,7 +82,7 @@ R = Reference(
     meaning="cosine-weighted average of P_s over the hemisphere of lights",
     definition="(1/π) ∫_Ω P_s(u) (u·n) dω_u",
     axes=AXES,
-    # R is smooth in its two variables, and each value is a quadrature: few points, no climbing.
+    # Few points and no hill climbing: R is smooth, and each value costs a quadrature.
     sampling=Sampling(fitted=11, checked=10, judged=12, climbs=False, verified=1 << 12),
     batch=64,
     options_at=_nodes_at,

@@ -1,19 +1,19 @@
-"""The whole fuzz BRDF integrated over the hemisphere: what the ambient model approximates.
+"""Integrals of the whole fuzz BRDF over the hemisphere, which the ambient model approximates.
 
-All are quadrature of smooth integrands for d > 0 and directions above the horizon, in float64.
-Light enters through its nine spherical harmonics: each result is linear in them.
+All are computed in float64 by `hemisphere_rule`, for densities d > 0 and directions above the
+horizon. `step` and `azimuths` are the arguments of that rule. Angles are in radians.
+
+Where light has nine coefficients of spherical harmonics, a result (9,) has one value for each
+harmonic. Its dot product with the coefficients is the result for that light.
 """
-
-import functools
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
 from integrals.fuzz.ps import scattered_fraction
 from integrals.reference import require_float64
-from integrals.rules.interval import exponential_decay
+from integrals.rules.hemisphere import AZIMUTHS, STEP, hemisphere_rule
 from shading import (
     direction,
     fiber_direction,
@@ -23,27 +23,6 @@ from shading import (
     penetration,
 )
 from shading.types import Scalar
-
-# At α ≥ 0.15, d ≥ 0.01 and v·n ≥ 0.1, the default is good to 1e-5 (tests/test_brdf.py).
-STEP = 1 / 12
-AZIMUTHS = 192
-
-
-@functools.cache
-def hemisphere_rule(step: float = STEP, azimuths: int = AZIMUTHS) -> tuple[np.ndarray, np.ndarray]:
-    """Give directions (n, 3) and weights (n,), in steradians, that integrate over the hemisphere.
-
-    The double exponential rule of `step` in −ln cos θ, so that what happens at cos θ ~ d is
-    resolved for any d; midpoints in azimuth.
-    """
-    s, weights = exponential_decay(step)
-    cosine = np.exp(-s)
-    sine = np.sqrt(-np.expm1(-2 * s))
-    phi = (np.arange(azimuths) + 0.5) * 2 * np.pi / azimuths
-    x, y = np.outer(sine, np.cos(phi)), np.outer(sine, np.sin(phi))
-    z = np.broadcast_to(cosine[:, None], x.shape)
-    solid = np.repeat(weights * cosine * 2 * np.pi / azimuths, azimuths)
-    return np.stack([x, y, z], axis=-1).reshape(-1, 3), solid
 
 
 def layer_response(
@@ -55,9 +34,9 @@ def layer_response(
     step: float = STEP,
     azimuths: int = AZIMUTHS,
 ) -> Array:
-    """Give ∫_Ω f(u, v) Yᵢ(u) (u·n) dω_u / c_f (9,): the layer's radiance towards v, light by light.
+    """Return ∫_Ω f(u, v) Yᵢ(u) (u·n) dω_u / c_f (9,), the radiance of the layer towards v.
 
-    The fibre-like SGGX phase function; angles in radians.
+    The phase function is that of fibres. v has the angles `theta_v` and `phi_v`.
     """
     require_float64()
     lights, weights = hemisphere_rule(step, azimuths)
@@ -78,9 +57,10 @@ def phase_over_lights(
     step: float = STEP,
     azimuths: int = AZIMUTHS,
 ) -> Array:
-    """Give ∫_Ω p_F(u, v) dω_u, for which the ambient model takes 1 − P_s(v) = ∫_Ω p_F(v, u) dω_u.
+    """Return ∫_Ω p_F(u, v) dω_u, the integral of the phase function over lights.
 
-    They differ because p_F(u, v) σ_F(u) is symmetric and p_F is not.
+    The ambient model uses 1 − P_s(v) = ∫_Ω p_F(v, u) dω_u instead. The two differ, because p_F is
+    not symmetric. Only p_F(u, v) σ_F(u) is.
     """
     require_float64()
     lights, weights = hemisphere_rule(step, azimuths)
@@ -92,9 +72,10 @@ def phase_over_lights(
 def base_response(
     alpha: Scalar, theta_f: Scalar, density: Scalar, step: float = STEP, azimuths: int = AZIMUTHS
 ) -> tuple[Array, Array]:
-    """Give E_p and E_s/c_f (9,) each: what reaches the base unscattered, and scattered once.
+    """Return E_p and E_s/c_f, (9,) each, the irradiance of the base.
 
-    E_p = ∫_Ω P_p(u) Yᵢ(u) (u·n) dω_u, E_s = c_f ∫_Ω (1 − P_p(u)) P_s(u) Yᵢ(u) (u·n) dω_u.
+    E_p is by light that is not scattered, and E_s by light that is scattered once:
+    E_p = ∫_Ω P_p(u) Yᵢ(u) (u·n) dω_u and E_s = c_f ∫_Ω (1 − P_p(u)) P_s(u) Yᵢ(u) (u·n) dω_u.
     """
     require_float64()
     lights, weights = hemisphere_rule(step, azimuths)
@@ -119,7 +100,7 @@ def layer_albedo(
     step: float = STEP,
     azimuths: int = AZIMUTHS,
 ) -> Array:
-    """Give ∫_Ω f(u, v) (v·n) dω_v / c_f, the part of the light from u that the layer reflects."""
+    """Return ∫_Ω f(u, v) (v·n) dω_v / c_f, the part of the light from u that the layer reflects."""
     require_float64()
     views, weights = hemisphere_rule(step, azimuths)
     fiber, light = fiber_direction(theta_f), direction(theta_u, phi_u)

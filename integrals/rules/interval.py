@@ -1,4 +1,4 @@
-"""Quadrature rules on standard intervals, as NumPy constants for use under `jit`."""
+"""Quadrature rules for intervals, and estimates of their error."""
 
 import functools
 from collections.abc import Callable
@@ -9,13 +9,13 @@ from jax import Array
 
 from integrals.reference import Estimate
 
-# Sums of terms that may have underflowed are no better than this.
+# The absolute error of a sum whose terms may have underflowed to zero.
 _UNDERFLOW = 1e-300
 
 
 @functools.cache
 def gauss_legendre(nodes: int, lower: float, upper: float) -> tuple[np.ndarray, np.ndarray]:
-    """Give Gauss–Legendre nodes and weights (nodes,) on [lower, upper]."""
+    """Return Gauss–Legendre nodes and weights, (nodes,) each, on [lower, upper]."""
     x, weights = np.polynomial.legendre.leggauss(nodes)
     half = (upper - lower) / 2
     return lower + half * (x + 1), half * weights
@@ -23,10 +23,11 @@ def gauss_legendre(nodes: int, lower: float, upper: float) -> tuple[np.ndarray, 
 
 @functools.cache
 def exponential_decay(step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Give nodes and weights for ∫₀^∞ f(s) ds, f smooth and falling off like e^(−s) or faster.
+    """Return nodes and weights for ∫₀^∞ f(s) ds, where f is smooth and decays at least like e^(−s).
 
-    The trapezoid rule in x after s = exp(x − e^(−x)) (Takahasi and Mori's double exponential
-    transformation), cut off where the transformed weight of e^(−s) is below 1e-18.
+    This is the double exponential rule of Takahasi and Mori: the trapezoid rule of the given `step`
+    in x after the substitution s = exp(x − e^(−x)). It ends near |x| = 3.8, because the
+    terms beyond are below 1e-18 for f = e^(−s).
     """
     x = np.arange(-3.8, 3.8 + step, step)
     s = np.exp(x - np.exp(-x))
@@ -34,21 +35,24 @@ def exponential_decay(step: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def checked_rule(rule: Callable[[int], Array], nodes: int, rounding: float | Array) -> Estimate:
-    """Give the value of a rule of `nodes`, its error judged against one of ¾ the nodes.
+    """Return the value of a rule with `nodes` nodes, and a bound on its error.
 
-    Even a rule that converges no faster than 1/nodes has an error of at most three times that
-    difference; one that converges geometrically is better by far. `rounding` is added.
+    `rule` maps a number of nodes to a value. The error is three times the difference to the rule
+    with ¾ of the nodes, plus `rounding`. This holds even if the rule converges only like 1/nodes. A
+    rule that converges geometrically is much better.
     """
     fine, coarse = rule(nodes), rule(3 * nodes // 4)
     return Estimate(fine, 3 * jnp.abs(fine - coarse) + rounding)
 
 
 def checked_steps(rule: Callable[[float], Array], step: float, rounding: float) -> Estimate:
-    """Give the value of a trapezoid rule of `step`, its error judged against two and four times it.
+    """Return the value of a trapezoid rule with `step`, and a bound on its error.
 
-    Halving the step squares the error of a smooth integrand. Where the difference to the doubled
-    step happens to vanish, the square of the difference before it stands in. `rounding` is
-    relative to the value, which is positive.
+    `rule` maps a step to a value, which must not be negative. The relative error is a sum of three
+    terms: the difference to the rule with twice the step, the square of the difference between the
+    rules with twice and with four times the step, and `rounding`. For a smooth integrand, halving
+    the step squares the relative error, so the squared term has the right size. It protects against
+    a first difference that is small by chance.
     """
     fine, coarse, coarser = rule(step), rule(2 * step), rule(4 * step)
     scale = jnp.maximum(fine, _UNDERFLOW)

@@ -1,1 +1,1 @@
-"""Special functions that the closed forms need and JAX does not have."""
+"""Special functions that the closed forms need and that JAX lacks."""

@@ -1,6 +1,6 @@
-"""Exponential integrals E_n(x) = ∫₁^∞ e^(−xt) t^(−n) dt for x ≥ 0, n = 1, 2, 3.
+"""The exponential integrals E_n(x) = ∫₁^∞ e^(−xt) t^(−n) dt for x ≥ 0 and n = 1, 2, 3.
 
-Own code because `jax.scipy.special.exp1`, `expi` and `expn` do not return for some arguments.
+JAX has `exp1`, `expi` and `expn` in `jax.scipy.special`, but they hang for some arguments.
 """
 
 import math
@@ -13,8 +13,8 @@ from jax import Array
 
 from shading.types import Scalar
 
-# Terms that reach float64: of Ein for x ≤ 2, of γ(2, ·) for x ≤ 1, of E_n for x ≥ 2
-# (tests/test_exponential.py).
+# Numbers of terms that give full float64 precision: the series of Ein for x ≤ 2, the series of
+# γ(2, ·) for x ≤ 1, the continued fraction of E_n for x ≥ 2 (tests/integrals/test_exponential.py).
 _SERIES_TERMS = 26
 _GAMMA2_TERMS = 18
 _FRACTION_TERMS = 60
@@ -22,14 +22,15 @@ _FRACTION_TERMS = 60
 
 @jax.custom_jvp
 def e1(x: Scalar) -> Array:
-    """Give E₁(x) = Ein(x) − γ − ln x."""
+    """Return E₁(x) = Ein(x) − γ − ln x, where γ is Euler's constant."""
     return _by_range(1, x, lambda x: ein(x) - np.euler_gamma - jnp.log(x))
 
 
 def _by_range(n: int, x: Scalar, series: Callable[[Array], Array]) -> Array:
-    """Give E_n(x): by `series` up to x = 2, beyond by its continued fraction.
+    """Return E_n(x), computed by `series` for x < 2 and by a continued fraction for x ≥ 2.
 
-    E_n = e^(−x) / (x+n − 1·n/(x+n+2 − 2(n+1)/(x+n+4 − …))): recursion in n would cancel there.
+    E_n = e^(−x) / (x+n − 1·n/(x+n+2 − 2(n+1)/(x+n+4 − …))). The recursion in n, which the series
+    for E₂ and E₃ use, would lose digits by cancellation for x ≥ 2.
     """
     x = jnp.asarray(x)
     small, large = jnp.where(x < 2, x, 1.0), jnp.where(x < 2, 2.0, x)
@@ -43,7 +44,7 @@ def _by_range(n: int, x: Scalar, series: Callable[[Array], Array]) -> Array:
 
 
 def ein(x: Scalar) -> Array:
-    """Give Ein(x) = ∫₀^x (1 − e^(−t))/t dt = E₁(x) + ln x + γ by its series, for 0 ≤ x ≤ 2."""
+    """Return Ein(x) = ∫₀^x (1 − e^(−t))/t dt = E₁(x) + ln x + γ by its series, for 0 ≤ x ≤ 2."""
     x = jnp.asarray(x)
     total = jnp.zeros_like(x)
     for k in range(_SERIES_TERMS, 0, -1):
@@ -52,7 +53,7 @@ def ein(x: Scalar) -> Array:
 
 
 def gamma2(x: Scalar) -> Array:
-    """Give γ(2, x) = ∫₀^x t e^(−t) dt = 1 − (1 + x) e^(−x) by its series, for 0 ≤ x ≤ 1."""
+    """Return γ(2, x) = ∫₀^x t e^(−t) dt = 1 − (1 + x) e^(−x) by its series, for 0 ≤ x ≤ 1."""
     x = jnp.asarray(x)
     total = jnp.zeros_like(x)
     for k in range(_GAMMA2_TERMS, 1, -1):
@@ -62,13 +63,13 @@ def gamma2(x: Scalar) -> Array:
 
 @jax.custom_jvp
 def e2(x: Scalar) -> Array:
-    """Give E₂(x) = e^(−x) − x E₁(x)."""
+    """Return E₂(x) = e^(−x) − x E₁(x)."""
     return _by_range(2, x, lambda x: jnp.exp(-x) - _times_e1(x))
 
 
 @jax.custom_jvp
 def e3(x: Scalar) -> Array:
-    """Give E₃(x) = (e^(−x) − x E₂(x)) / 2."""
+    """Return E₃(x) = (e^(−x) − x E₂(x)) / 2."""
     return _by_range(3, x, lambda x: (jnp.exp(-x) - x * e2(x)) / 2)
 
 

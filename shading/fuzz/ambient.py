@@ -1,10 +1,10 @@
-"""The ambient model of the fuzz BRDF: averages over the hemisphere take the place of integrals.
+"""The ambient model of the fuzz BRDF. It replaces integrals over lights by products of averages.
 
-After the talk's slides "Ambient Lighting" and "Ambient Shadowing". Light enters as its mean
-radiance over the hemisphere and its irradiance (`shading.harmonics`), the material as G, Q, R (Eq.
-3 to 5 of the supplement) and P_s: exact, and then in [0, 1], or fitted. Albedos are in [0, 1];
-they, radiances and irradiances are scalars or colours, (3,). docs/brdf.md measures what this
-costs.
+The source is the talk's slides "Ambient Lighting" and "Ambient Shadowing". The light is described
+by its mean radiance over the hemisphere and its irradiance (`shading.harmonics`). The material is
+described by G, Q, R (Eq. 3 to 5 of the supplement) and P_s. These four may be exact values, which
+lie in [0, 1], or values of a fit. An albedo is in [0, 1]. Albedos, radiances and irradiances are
+scalars or colours (3,). docs/brdf.md gives the error of the model.
 """
 
 import jax.numpy as jnp
@@ -15,12 +15,15 @@ from shading.types import Scalar
 
 
 def ambient_layer(mean: Colour, albedo: Colour, scattering: Scalar, scattered: Scalar) -> Array:
-    """Give the layer's radiance towards v, c_f G(d, v) (1 − P_s(v)) L̄, per steradian.
+    """Return the radiance of the layer towards v, c_f G(d, v) (1 − P_s(v)) L̄.
 
-    `mean` L̄ is the light's mean radiance over the hemisphere; `albedo` c_f the fibres';
-    `scattering` G(d, v) and `scattered` P_s(v). "Ambient Lighting": three averages for the average
-    of three factors, and 1 − P_s(v) = ∫_Ω p(v, u) dω_u for the integral of p(u, v), as if p were
-    symmetric.
+    The source is the slide "Ambient Lighting".
+
+    `mean` L̄ is the mean radiance of the light over the hemisphere. `albedo` is the albedo c_f of
+    the fibres. `scattering` is G(d, v) and `scattered` is P_s(v).
+
+    The model approximates twice. It takes the product of three averages for the average of a
+    product, and 1 − P_s(v) = ∫_Ω p(v, u) dω_u for ∫_Ω p(u, v) dω_u, as if p were symmetric.
     """
     return jnp.asarray(albedo) * scattering * (1 - jnp.asarray(scattered)) * jnp.asarray(mean)
 
@@ -32,11 +35,14 @@ def ambient_attenuation(
     average_penetration: Scalar,
     average_scattered: Scalar,
 ) -> Array:
-    """Give c_atten = P_e(v) [Q + c_f R (1 − Q)], the factor of the base's ambient light.
+    """Return c_atten = P_e(v) [Q + c_f R (1 − Q)], the attenuation of the base.
 
-    `cos_v` = v·n in (0, 1]; `density` d ≥ 0; `albedo` c_f of the fibres; `average_penetration` Q(d)
-    and `average_scattered` R(θf, α). It multiplies the base's diffuse radiance c_b E/π and its
-    specular one alike. "Ambient Shadowing"; exact for isotropic fibres in uniform light.
+    The source is the slide "Ambient Shadowing".
+
+    `cos_v` is v·n in (0, 1], `density` is d ≥ 0 and `albedo` is the albedo c_f of the fibres.
+    `average_penetration` is Q(d) and `average_scattered` is R(θf, α). The same factor multiplies
+    the diffuse radiance c_b E/π of the base and its specular radiance. It is exact for isotropic
+    fibres in uniform light.
     """
     q = jnp.asarray(average_penetration)
     down = q + jnp.asarray(albedo) * average_scattered * (1 - q)
@@ -46,10 +52,11 @@ def ambient_attenuation(
 def ambient_radiance(
     layer: Colour, attenuation: Colour, base_albedo: Colour, irradiance: Colour
 ) -> Array:
-    """Give the radiance of layer and diffuse base, layer + c_atten c_b E/π, per steradian.
+    """Return the radiance of the layer and a diffuse base together, layer + c_atten c_b E/π.
 
-    `layer` is `ambient_layer`, `attenuation` c_atten is `ambient_attenuation`; `base_albedo` c_b is
-    the diffuse base's, `irradiance` E what the light has on the surface. "Ambient Shadowing".
+    `layer` comes from `ambient_layer` and `attenuation` from `ambient_attenuation`. `base_albedo`
+    is the albedo c_b of the base, and `irradiance` is the irradiance E of the surface. The source
+    is the slide "Ambient Shadowing".
     """
     base = jnp.asarray(base_albedo) * jnp.asarray(irradiance) / jnp.pi
     return jnp.asarray(layer) + jnp.asarray(attenuation) * base

@@ -1,6 +1,7 @@
-"""The deferred simplification of the fuzz BRDF: fixed parameters, one weight, and wrapped light.
+"""The simplified fuzz BRDF of the deferred renderer.
 
-The fibre is along the normal, and the layer does not shadow the base.
+All parameters but the base's albedo are constants, and one weight (the fuzziness) blends the fuzz
+with a Lambertian base. The fibre is along the normal, and the layer casts no shadow on the base.
 """
 
 import jax.numpy as jnp
@@ -17,15 +18,17 @@ ALBEDO_RATIO = 5.0
 WRAP = 0.2
 WRAP_POWER = 2
 
-# Wrapped light reaches points that it would graze or miss; the layer's BRDF is continued there.
+# Wrapped light also reaches points where u·n ≤ 0. The BRDF of the layer is evaluated there with
+# this u·n instead.
 _LEAST_COSINE = 1e-3
 
 
 def wrapped_cosine(cosine: Scalar, wrap: Scalar = WRAP, power: int = WRAP_POWER) -> Array:
-    """Give (1 + n) / (2 (1 + w)) (max(u·n + w, 0) / (1 + w))ⁿ, in place of max(u·n, 0).
+    """Return the wrapped cosine, which replaces the clamped cosine max(u·n, 0).
 
-    `cosine` is u·n in [−1, 1], `wrap` w ≥ 0, `power` n ≥ 1. Over the sphere it integrates to π, as
-    the clamped cosine does (McAuley 2013).
+    It is (1 + n) / (2 (1 + w)) (max(u·n + w, 0) / (1 + w))ⁿ. `cosine` is u·n in [−1, 1], `wrap` is
+    w ≥ 0 and `power` is n ≥ 1. Its integral over the sphere is π, as that of the clamped cosine
+    (McAuley 2013).
     """
     w = jnp.asarray(wrap)
     lit = jnp.maximum(jnp.asarray(cosine) + w, 0) / (1 + w)
@@ -35,12 +38,14 @@ def wrapped_cosine(cosine: Scalar, wrap: Scalar = WRAP, power: int = WRAP_POWER)
 def deferred_radiance(
     light: Vector, view: Vector, albedo: Colour, fuzziness: Scalar, radiance: Colour = 1.0
 ) -> Array:
-    """Give lerp(L_Lambert, L_fuzz, fuzziness) of a directional light, n = t = (0, 0, 1).
+    """Return the radiance lerp(L_Lambert, L_fuzz, fuzziness) in directional light.
 
-    `light` u and `view` v are unit vectors, v·n > 0; `albedo` is the Lambertian base's, the fibres'
-    is five times it; `fuzziness` in [0, 1]; `radiance` is the light's irradiance across its
-    direction. Inferred: only the fuzz is lit by the wrapped cosine, which takes the place of the
-    rendering equation's u·n, and within the BRDF u·n is at least 0.001.
+    The normal and the fibre are (0, 0, 1). `light` u and `view` v are unit vectors with v·n > 0.
+    `albedo` is that of the Lambertian base. The albedo of the fibres is five times as large.
+    `fuzziness` is in [0, 1]. `radiance` is the irradiance on a plane across the light's direction.
+
+    Two things are inferred: the wrapped cosine replaces the u·n of the rendering equation for the
+    fuzz only, and the u·n within the BRDF of the layer is at least 0.001.
     """
     light, view = jnp.asarray(light), jnp.asarray(view)
     cos_u, cos_v = light[2], view[2]

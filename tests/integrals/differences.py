@@ -1,8 +1,9 @@
-"""Derivatives by finite differences of fourth order, one-sided at the ends of a domain."""
+"""Finite differences of fourth order, central or one-sided at the ends of a domain."""
 
 import numpy as np
 
-# Of f(x + k h), k = the row's offsets, for h f'(x).
+# Stencils for h f'(x): each row has the offsets k, and the weights of f(x + k h). The rows are the
+# central stencil and those for the lower and the upper end.
 _OFFSETS = (np.array([-2, -1, 1, 2]), np.arange(5), -np.arange(5))
 _WEIGHTS = (
     np.array([1, -8, 8, -1]) / 12,
@@ -12,9 +13,9 @@ _WEIGHTS = (
 
 
 def difference(function, points, axis, step, lower, upper):
-    """Give the derivative along `axis` at points (axes, n) of a vectorised function.
+    """Return the derivative of a vectorised function along `axis` at points (axes, n).
 
-    `function` maps (axes, n) to (..., n); `step` is a scalar or (n,). The stencil is central, or
+    `function` maps (axes, n) to (..., n). `step` is a scalar or an array (n,). The stencil is
     one-sided where a central one would leave [lower, upper].
     """
     points = np.asarray(points, float)

@@ -1,7 +1,7 @@
-"""Problems with exact answers, shared by the legs; exact values in 50 digits; awkward points.
+"""Known values that every leg must give, exact values with 50 digits, and difficult points.
 
-The exact values evaluate other formulas than the package does: P_s by the eigenvectors of the
-cone, G and Q by E₁ alone, with digits to spare for the cancellation that this costs.
+The exact values come from other formulas than those of the package: P_s from the eigenvectors of
+the cone, G and Q from E₁ alone. Those formulas cancel, so they are evaluated with more digits.
 """
 
 from dataclasses import dataclass
@@ -14,23 +14,23 @@ DIGITS = 50
 
 
 @dataclass(frozen=True)
-class Problem:
-    """A point of an integral where the exact value is elementary, and why it is."""
+class KnownValue:
+    """A point of a quantity where the exact value is elementary, and the reason `why`."""
 
-    integral: str
+    quantity: str
     arguments: tuple[float, ...]
     exact: float
     why: str
 
 
 def _grazing(alpha, theta_f, phi):
-    """P_s at u·n = 0, where the cubic loses its constant: ½ (1 + κ (u·t)(n·t) / (σ_u σ_n))."""
+    """P_s at u·n = 0, where the constant of the cubic is zero: ½ (1 + κ (u·t)(n·t) / (σ_u σ_n))."""
     kappa, a, b = 1 - alpha**2, np.sin(theta_f) * np.cos(phi), np.cos(theta_f)
     return (1 + kappa * a * b / np.sqrt((1 - kappa * a * a) * (1 - kappa * b * b))) / 2
 
 
 def _upright(alpha, theta_u):
-    """P_s at t = n, where u, n, t are coplanar and the root is of a quadratic."""
+    """P_s at t = n, where u, n and t are in one plane and λ is the root of a quadratic."""
     kappa, c = 1 - alpha**2, np.cos(theta_u)
     h = -kappa * c / 2
     size = np.hypot(h, alpha)
@@ -39,59 +39,61 @@ def _upright(alpha, theta_u):
 
 
 def _across(alpha, theta_u):
-    """P_s at u ⊥ t ⊥ n, where λ = 1."""
+    """P_s where t is at right angles to u and n, so that λ = 1."""
     c = np.cos(theta_u)
     return 1 - np.sqrt((1 + c) / (1 + alpha**2 * c)) / 2
 
 
 def upright_average(alpha):
-    """R at t = n: atan2(s (1 + α²), 1 + α² + 2α⁴) / s with s = 2α √(1 − α²)."""
+    """R at t = n: atan2(s (1 + α²), 1 + α² + 2α⁴) / s, where s = 2α √(1 − α²)."""
     s = 2 * alpha * np.sqrt((1 - alpha) * (1 + alpha))
     return np.arctan2(s * (1 + alpha**2), 1 + alpha**2 + 2 * alpha**4) / s if s else 0.5
 
 
-def _table() -> list[Problem]:
-    problems = [
-        Problem("ps", (1.0, theta_f, theta_u, phi), 0.5, "no preferred direction")
+def _table() -> list[KnownValue]:
+    values = [
+        KnownValue("ps", (1.0, theta_f, theta_u, phi), 0.5, "no preferred direction")
         for theta_f, theta_u, phi in ((0, 0, 0), (0.7, 1.1, 2.0), (RIGHT, RIGHT, 0), (0.3, 0, 1))
     ]
     for alpha in (0.15, 0.4, 0.9):
-        problems += [
-            Problem("ps", (alpha, 0, 0, 0), 1 / (1 + alpha**2), "u = t = n"),
-            Problem(
+        values += [
+            KnownValue("ps", (alpha, 0, 0, 0), 1 / (1 + alpha**2), "u = t = n"),
+            KnownValue(
                 "ps",
                 (alpha, RIGHT, 0, 0),
                 1 - 1 / np.sqrt(2 * (1 + alpha**2)),
                 "u = n across the fibre",
             ),
-            Problem("ps", (alpha, 0, 1.0, 2.0), _upright(alpha, 1.0), "coplanar"),
-            Problem("ps", (alpha, RIGHT, 1.2, RIGHT), _across(alpha, 1.2), "u, n across the fibre"),
-            Problem("ps", (alpha, 0.8, RIGHT, 0.5), _grazing(alpha, 0.8, 0.5), "grazing"),
-            Problem("ps", (alpha, 0.8, RIGHT, np.pi), _grazing(alpha, 0.8, np.pi), "grazing"),
-            Problem("r", (alpha, 0.0), float(upright_average(alpha)), "upright fibre"),
+            KnownValue("ps", (alpha, 0, 1.0, 2.0), _upright(alpha, 1.0), "coplanar"),
+            KnownValue(
+                "ps", (alpha, RIGHT, 1.2, RIGHT), _across(alpha, 1.2), "u, n across the fibre"
+            ),
+            KnownValue("ps", (alpha, 0.8, RIGHT, 0.5), _grazing(alpha, 0.8, 0.5), "grazing"),
+            KnownValue("ps", (alpha, 0.8, RIGHT, np.pi), _grazing(alpha, 0.8, np.pi), "grazing"),
+            KnownValue("r", (alpha, 0.0), float(upright_average(alpha)), "upright fibre"),
         ]
-    problems += [Problem("r", (1.0, theta), 0.5, "P_s = 1/2") for theta in (0.0, 0.6, RIGHT)]
-    problems += [
-        Problem("g", (d, nu), 1 - nu * np.log1p(1 / nu), "opaque layer")
+    values += [KnownValue("r", (1.0, theta), 0.5, "P_s = 1/2") for theta in (0.0, 0.6, RIGHT)]
+    values += [
+        KnownValue("g", (d, nu), 1 - nu * np.log1p(1 / nu), "opaque layer")
         for d, nu in ((750.0, 1.0), (1e6, 0.3), (1e9, 1e-3))
     ]
-    problems += [Problem("g", (d, 0.0), 1.0, "grazing view") for d in (1e-6, 0.5, 30.0)]
-    problems += [Problem("g", (0.0, nu), 0.0, "no layer") for nu in (1e-3, 1.0)]
-    problems += [
-        Problem("q", (0.0,), 1.0, "no layer"),
-        Problem("q", (1.0,), float(mp.e1(1)), "E₃(1) = E₁(1)/2"),
-        Problem("q", (1e4,), 0.0, "opaque layer"),
-        Problem("velvet", (0.0,), 1.0, "isotropic lobe"),
-        Problem("velvet", (-np.sqrt(0.5),), np.pi / (4 * np.sqrt(2) + 2 * np.pi), "x = s"),
+    values += [KnownValue("g", (d, 0.0), 1.0, "grazing view") for d in (1e-6, 0.5, 30.0)]
+    values += [KnownValue("g", (0.0, nu), 0.0, "no layer") for nu in (1e-3, 1.0)]
+    values += [
+        KnownValue("q", (0.0,), 1.0, "no layer"),
+        KnownValue("q", (1.0,), float(mp.e1(1)), "E₃(1) = E₁(1)/2"),
+        KnownValue("q", (1e4,), 0.0, "opaque layer"),
+        KnownValue("velvet", (0.0,), 1.0, "isotropic lobe"),
+        KnownValue("velvet", (-np.sqrt(0.5),), np.pi / (4 * np.sqrt(2) + 2 * np.pi), "x = s"),
     ]
-    return problems
+    return values
 
 
-PROBLEMS = _table()
+KNOWN_VALUES = _table()
 
 
 def exact_ps(alpha, theta_f, theta_u, phi) -> mp.mpf:
-    """Give P_s of a fibre in 50 digits, from float64 arguments taken as exact."""
+    """Return P_s of a fibre with 50 digits, for float64 arguments taken as exact."""
     with mp.workdps(DIGITS):
         alpha, theta_f, theta_u, phi = map(mp.mpf, map(float, (alpha, theta_f, theta_u, phi)))
         fiber = mp.matrix([mp.sin(theta_f), 0, mp.cos(theta_f)])
@@ -99,7 +101,7 @@ def exact_ps(alpha, theta_f, theta_u, phi) -> mp.mpf:
 
 
 def exact_sggx(matrix, theta_u, phi) -> mp.mpf:
-    """Give P_s of any SGGX matrix in 50 digits, from float64 arguments taken as exact."""
+    """Return P_s of an SGGX matrix with 50 digits, for float64 arguments taken as exact."""
     with mp.workdps(DIGITS):
         values, vectors = mp.eigsy(mp.matrix(np.asarray(matrix).tolist()))
         root = vectors * mp.diag([mp.sqrt(value) for value in values]) * vectors.T
@@ -112,7 +114,7 @@ def _light(theta_u, phi):
 
 
 def _cone_fraction(root, light):
-    """P_s = 1 − |e₁·ẑ| λ₁ / √((λ₁ − λ₂)(λ₁ − λ₃)) with the eigenvalues of S^½ B S^½."""
+    """P_s = 1 − |e₁·ẑ| λ₁ / √((λ₁ − λ₂)(λ₁ − λ₃)), where λᵢ are the eigenvalues of S^½ B S^½."""
     normal = mp.matrix([0, 0, 1])
     cone = light * normal.T + normal * light.T - light[2] * mp.eye(3)
     image = root * cone * root
@@ -123,8 +125,8 @@ def _cone_fraction(root, light):
 
 
 def exact_g(density, cos_v) -> mp.mpf:
-    """Give G in 50 digits for d, ν > 0."""
-    # G ~ d/ν is what is left of terms of order one
+    """Return G with 50 digits for d, ν > 0."""
+    # Terms of order one cancel and leave G ~ d/ν. The extra digits make up for it.
     with mp.workdps(DIGITS + int(max(0, -np.log10(density)) + max(0, -np.log10(cos_v)))):
         d, nu = mp.mpf(float(density)), mp.mpf(float(cos_v))
         e1 = _e1(d)
@@ -133,7 +135,7 @@ def exact_g(density, cos_v) -> mp.mpf:
 
 
 def exact_q(density) -> mp.mpf:
-    """Give Q in 50 digits for d > 0."""
+    """Return Q with 50 digits for d > 0."""
     with mp.workdps(DIGITS + 10):
         d = mp.mpf(float(density))
         return mp.exp(-d) - d * (mp.exp(-d) - d * _e1(d))
@@ -144,16 +146,17 @@ def _e1(x):
 
 
 def distance(values, exact) -> np.ndarray:
-    """Give |value − exact| elementwise, rounded to float64 only after the subtraction."""
+    """Return |value − exact| for each element, rounded to float64 only after the subtraction."""
     pairs = zip(np.asarray(values), exact, strict=True)
     return np.array([float(abs(mp.mpf(float(value)) - truth)) for value, truth in pairs])
 
 
 def awkward_points(seed: int, count: int, least_alpha: float) -> np.ndarray:
-    """Give points (4, count) of P_s's domain, bunched where it is hard to evaluate.
+    """Return points (α, θf, θu, φ), shape (4, count), many of them where P_s is hard to evaluate.
 
-    Angles lie at their ends, within 1e-12 of them, at multiples of 22.5° and anywhere; light and
-    fibre within a few α of each other, opposite, or both of the horizon; α is log-uniform.
+    Angles are at the ends of their domain, close to them (down to a fraction of 1e-12), at quarters
+    of it, or anywhere. In some points the light is within a few α of the fibre or of its opposite,
+    or both are near the horizon. α is log-uniform from `least_alpha` to 1.
     """
     rng = np.random.default_rng(seed)
     alpha = np.exp(rng.uniform(np.log(least_alpha), 0, count))

@@ -1,4 +1,4 @@
-"""The cubic's positive root: exact for cubics of known roots, and its implicit derivative."""
+"""The positive root of the cubic, compared with known roots, and its derivative."""
 
 import functools
 import itertools
@@ -16,7 +16,7 @@ STEPS = [newton_step, tangent_step]
 
 
 def known_cubics(seed: int, count: int):
-    """Give (roots (3, count), A, E, m) of cubics with the roots λ > 0 ≥ −r ≥ −s."""
+    """Return (λ, r, s) and (A, E, m) of cubics with the roots λ > 0, −r ≤ 0 and −s ≤ 0."""
     rng = np.random.default_rng(seed)
     root, r, s = 10 ** rng.uniform(-3, 0, (3, count))
     r, s = np.where(rng.random((2, count)) < 0.1, 0, [r, s])
@@ -30,11 +30,11 @@ def solver(step, steps: int):
 
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("factor", [1.0, 1.5, 10.0])
-def test_it_finds_the_positive_root_from_above(factor, step):
+def test_finds_the_positive_root_from_above(factor, step):
     (root, r, s), (a, e, m) = known_cubics(0, 5000)
-    # A start of ten times the root takes some steps more before convergence turns quadratic.
+    # A start of ten times the root needs more steps before convergence is quadratic.
     found = solver(step, 12)(a, e, m, factor * root)
-    # Roundings of the coefficients, and of the tangent's D next to its discriminant's root.
+    # Roundings of the coefficients, and of d in `tangent_step`.
     terms = root**3 + (r + s + root) * root**2 + (root * (r + s) + r * s) * root + m
     allowed = EPS * (terms / ((root + r) * (root + s)) + abs(e + root**2) / (a + 2 * root))
     assert np.all(abs(found - root) < 4 * allowed)
@@ -54,8 +54,8 @@ def test_convergence_is_quadratic_and_monotone_from_above(step, constant):
         assert np.all(after[significant] <= constant * before[significant] ** 2)
 
 
-def test_newton_from_below_is_above_after_a_step_and_no_further_off():
-    """What docs/closed-form.md says of a start below the root: 2ε²/(1 − 3ε) is left above it."""
+def test_newton_from_below_is_above_the_root_after_one_step():
+    """A start below the root by ε leaves an error between 0 and 2ε²/(1 − 3ε)."""
     roots, coefficients = known_cubics(3, 2000)
     for below in (0.1, 0.01):
         after = solver(newton_step, 1)(*coefficients, (1 - below) * roots[0]) / roots[0] - 1
@@ -64,7 +64,7 @@ def test_newton_from_below_is_above_after_a_step_and_no_further_off():
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_zero_constant_leaves_the_root_of_the_quadratic(step):
+def test_without_a_constant_the_cubic_has_the_root_of_a_quadratic(step):
     a, e = np.array([0.6, -0.6, 0.0]), np.array([1.0, 1.0, 0.4])
     exact = -a / 2 + np.sqrt(a * a / 4 + e)
     found = solver(step, 6)(a, e, np.zeros(3), 1.2 * exact)
@@ -72,7 +72,7 @@ def test_a_zero_constant_leaves_the_root_of_the_quadratic(step):
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_the_derivative_is_the_implicit_one(step):
+def test_derivative_is_that_of_the_implicit_equation(step):
     roots, coefficients = known_cubics(2, 200)
     simple = (roots[0] > 0.05) & (roots[1] + roots[2] > 0)
     points = np.stack([c[simple] for c in coefficients])
@@ -86,11 +86,11 @@ def test_the_derivative_is_the_implicit_one(step):
     for axis in range(3):
         width = 1e-4 * roots[0][simple] * (1e-1 + abs(points[axis]))
         upper = difference(lambda p: solver(step, 20)(*p, start), points, axis, width, -9, 9)
-        # h⁴ of the stencil, and the roundings of the root over h.
+        # The error of the stencil is of order h⁴, plus the roundings of the root over h.
         np.testing.assert_allclose(gradient[axis], upper, rtol=1e-6, atol=1e-9 / width.min() * 1e-6)
 
 
-def test_a_floor_only_raises_and_keeps_the_values_own_derivative():
+def test_at_least_keeps_the_derivative_of_the_value():
     x = np.array([-1.0, 0.5, 1.0, 2.0])
     np.testing.assert_array_equal(at_least(jnp.array(x), 1.0), np.maximum(x, 1))
     for value in x:
@@ -99,7 +99,7 @@ def test_a_floor_only_raises_and_keeps_the_values_own_derivative():
         assert jax.jacfwd(at_least)(jnp.array(value), 1.0) == 1
 
 
-def test_a_magnitude_has_the_values_own_derivative():
+def test_magnitude_keeps_the_derivative_of_the_value():
     x = np.array([-1e-30, -0.0, 0.0, 2.0])
     np.testing.assert_array_equal(magnitude(jnp.array(x)), np.abs(x))
     for value in x:

@@ -1,4 +1,4 @@
-"""Exponential integrals to full relative precision, against mpmath."""
+"""Exponential integrals have full relative precision, compared with mpmath."""
 
 import jax
 import jax.numpy as jnp
@@ -8,9 +8,9 @@ import pytest
 
 from integrals.special.exponential import e1, e2, e3, ein, gamma2
 
-# Near x = 2 the series of Ein cancels against γ + ln x, by a factor of 30 in E₁ and 60 in E₃.
+# Near x = 2 the series of Ein and γ + ln x cancel: E₁ loses a factor of 30, and E₃ of 60.
 SERIES_CANCELLATION = 2e-14
-# Without cancellation: a sum of 26 terms.
+# A sum of 26 terms without cancellation.
 ROUNDING = 2e-15
 
 FUNCTIONS = {
@@ -42,7 +42,7 @@ def test_relative_precision_over_the_whole_range(name):
     assert worst < tolerance
 
 
-def test_at_zero_each_has_its_limit():
+def test_values_at_zero():
     assert e1(0.0) == np.inf
     assert e2(0.0) == 1
     assert e3(0.0) == 0.5
@@ -51,13 +51,13 @@ def test_at_zero_each_has_its_limit():
 
 
 @pytest.mark.parametrize("function", [e1, e2, e3])
-def test_far_out_each_vanishes(function):
+def test_values_are_zero_for_large_arguments(function):
     assert function(1e4) == 0
     assert function(1e300) == 0
     assert jax.grad(function)(1e300) == 0
 
 
-def test_derivatives_are_the_integral_of_one_order_less():
+def test_derivatives_are_the_integrals_of_one_order_less():
     x = jnp.array([1e-9, 0.3, 1.999, 2.001, 50.0])
     value1, value2 = jax.vmap(e1)(x), jax.vmap(e2)(x)
     for derivative, expected in (

@@ -1,4 +1,4 @@
-"""G: exact from d, ν → 0 to opaque layers, by every leg; and what was misprinted in it."""
+"""G: every leg is exact, from d, ν → 0 to opaque layers; and the misprint in its definition."""
 
 import functools
 import itertools
@@ -13,21 +13,21 @@ from tests.batches import batched
 from tests.integrals.differences import difference
 from tests.integrals.problems import distance, exact_g
 
-# Sums of exponential integrals that do not cancel; what the closed form states.
+# The relative error that the closed form states. Its sums of exponential integrals do not cancel.
 RELATIVE = 16 * np.finfo(float).eps
-# Roundings over the step of a difference, and h⁴ of its stencil, relative to G/d and G/ν.
+# Error of a finite difference relative to G/d and G/ν: roundings over the step, and the stencil.
 DIFFERENCES = 1e-9
 LEGS = ("closed_form", "quadrature", "monte_carlo")
 WIDTH = {"closed_form": 256, "quadrature": 256, "monte_carlo": 32}
 
 
 def points() -> np.ndarray:
-    """Give (2, n) of d and ν over all magnitudes, thin and thick, normal and grazing."""
+    """Return d and ν, shape (2, n), over all magnitudes: thin and thick, normal and grazing."""
     rng = np.random.default_rng(0)
     wide = 10 ** rng.uniform([-12, -12], [2.8, 0], (400, 2))
     tiny = 10 ** rng.uniform([-290, -290], [0, 0], (100, 2))
     ordinary = rng.uniform([0, 0], [2, 1], (300, 2))
-    # the seam between the two evaluations, d + d/ν = 1
+    # The closed form uses different formulas on the two sides of d + d/ν = 1.
     cos_v = rng.uniform(0.01, 1, 100)
     seam = np.stack([cos_v / (1 + cos_v) * (1 + 1e-12 * rng.normal(size=100)), cos_v], 1)
     return np.concatenate([wide, tiny, ordinary, seam]).T
@@ -54,17 +54,17 @@ def test_each_leg_is_within_its_stated_error(leg):
     assert np.all(distance(value, exact()) <= error)
 
 
-def test_the_closed_form_keeps_full_relative_precision():
+def test_closed_form_has_full_relative_precision():
     value, _ = evaluator("closed_form")(*points())
     assert np.all(distance(value, exact()) <= RELATIVE * np.array(exact()).astype(float))
 
 
-def test_the_quadrature_states_an_error_that_is_of_use():
+def test_stated_error_of_the_quadrature_is_small():
     _, error = evaluator("quadrature")(*points())
     assert np.all(error < 1e-11)
 
 
-def test_a_coarse_quadrature_says_so():
+def test_stated_error_holds_for_a_coarse_quadrature():
     for step in (1 / 2, 1 / 3, 1 / 4):
         value, error = jax.jit(jax.vmap(functools.partial(G.quadrature, step=step)))(*points())
         miss = distance(value, exact())
@@ -74,7 +74,7 @@ def test_a_coarse_quadrature_says_so():
 
 @pytest.mark.parametrize("sequence", ["random", "sobol"])
 def test_monte_carlo_is_within_five_standard_errors(sequence):
-    """Where the samples see the layers of width d and ν; the seed is fixed."""
+    """Only where d and ν are so large that enough samples fall within them. The seed is fixed."""
     rng = np.random.default_rng(2)
     sample = rng.uniform([0.01, 0.02], [2, 1], (24, 2)).T
     value, error = jax.jit(jax.vmap(functools.partial(G.monte_carlo, sequence=sequence)))(*sample)
@@ -89,22 +89,22 @@ def test_limits(leg):
 
 
 @pytest.mark.parametrize("leg", LEGS)
-def test_the_corner_without_a_limit_has_no_value(leg):
-    """Towards d = ν = 0 with d = xν, G tends to 1 − e^(−x): to anything in [0, 1]."""
+def test_corner_without_a_limit_is_nan(leg):
+    """With d = xν, G → 1 − e^(−x) as ν → 0, which may be any number in [0, 1)."""
     value, error = evaluator(leg)(*np.zeros((2, 1)))
     assert np.isnan(value).all()
     assert np.isnan(error).all()
 
 
-def test_on_the_way_to_the_corner_the_value_is_that_of_the_way():
+def test_limit_at_the_corner_depends_on_the_direction():
     ways = np.array([1e-3, 0.1, 1.0, 10.0])
     value, _ = evaluator("closed_form")(1e-12 * ways, np.full(4, 1e-12))
     np.testing.assert_allclose(value, -np.expm1(-ways), atol=1e-10)
 
 
 @pytest.mark.parametrize("leg", LEGS)
-def test_the_slope_at_grazing_views_is_minus_infinity(leg):
-    """G = 1 + ν ln ν + O(ν): every leg says that its derivative in ν has no finite value."""
+def test_slope_at_grazing_views_is_minus_infinity(leg):
+    """G = 1 + ν ln ν + O(ν), so the derivative in ν is −∞ for every leg."""
     by_density, by_cosine = gradient(leg)(np.array([1e-6, 0.5, 20.0]), np.zeros(3))
     np.testing.assert_array_equal(by_cosine, -np.inf)
     np.testing.assert_array_equal(by_density, 0)
@@ -116,7 +116,7 @@ def test_the_slope_at_grazing_views_is_minus_infinity(leg):
     assert forward(0.5, 0.0) == (0, -np.inf)
 
 
-def test_the_slope_at_grazing_views_grows_like_the_logarithm():
+def test_slope_near_grazing_views_is_logarithmic():
     nu = np.array([1e-6, 1e-9, 1e-12])
     slope = gradient("closed_form")(np.full(3, 0.5), nu)[1]
     np.testing.assert_allclose(np.diff(slope) / np.diff(np.log(nu)), 1, rtol=1e-4)
@@ -127,13 +127,13 @@ def test_the_slope_at_grazing_views_grows_like_the_logarithm():
 def test_derivatives_are_finite_on_the_closed_domain(leg, mode):
     ends = [0.0, 1e-300, 1e-12, 1e-3, 0.5, 1.0, 30.0, 1e9, 1e300]
     d, nu = np.array([(d, nu) for d in ends for nu in ends if 0 < nu <= 1]).T
-    # Of ν = 1e-300 and d/ν ~ 1, G changes by one over a distance of 1e-300.
+    # ν = 1e-300 with d/ν ~ 1 is left out by `ends`: G changes by one over a distance of 1e-300.
     for derivative in gradient(leg, mode)(d, nu):
         assert np.isfinite(derivative).all()
 
 
 @pytest.mark.parametrize("leg", LEGS)
-def test_derivatives_are_those_of_finite_differences(leg):
+def test_derivatives_equal_finite_differences(leg):
     rng = np.random.default_rng(1)
     d, nu = 10 ** rng.uniform([-6, -6], [1, 0], (50 if leg == "monte_carlo" else 200, 2)).T
     sample = np.stack([np.append(d, [0.0, 0.0, 0.3]), np.append(nu, [0.2, 1.0, 1.0])])
@@ -142,7 +142,7 @@ def test_derivatives_are_those_of_finite_differences(leg):
         return evaluator(leg)(*x).value
 
     derivatives = gradient(leg)(*sample)
-    # G varies over d ~ ν and ν ~ d; at d = 0 the second derivative is logarithmic.
+    # G changes over distances of d and of ν. At d = 0 its second derivative is logarithmic.
     steps = 1e-3 * np.stack([np.where(sample[0] > 0, sample[0], 1e-9), sample[1]])
     for axis, upper in ((0, np.inf), (1, 1.0)):
         expected = difference(value, sample, axis, steps[axis], 0.0, upper)
@@ -152,8 +152,8 @@ def test_derivatives_are_those_of_finite_differences(leg):
         assert np.all(abs(derivatives[axis] - expected) <= allowed)
 
 
-def test_gradients_match_the_exact_ones():
-    """Against derivatives of the 50-digit value, where differences of float64 lose digits."""
+def test_gradients_equal_exact_derivatives():
+    """Compared with differences of the 50-digit value, because those of float64 lose digits."""
     sample = np.array([[1e-9, 0.3], [1e-6, 1e-9], [0.4, 0.7], [30.0, 1e-4], [1e-3, 1.0]]).T
     by_density, by_cosine = gradient("closed_form")(*sample)
     for i, (d, nu) in enumerate(sample.T):
@@ -182,7 +182,7 @@ def test_second_derivatives_are_finite_where_smooth():
     by = jax.jit(hessian)(d, nu)
     assert np.isfinite(by).all()
     np.testing.assert_allclose(by[0][1], by[1][0], rtol=1e-10, atol=1e-30)
-    # G = 1 − e^(−d/ν) E₂(d) − ν K gives ∂G/∂d = e^(−d/ν) E₂(d)/ν, hence ∂²G/∂d².
+    # G = 1 − e^(−d/ν) E₂(d) − ν K gives ∂G/∂d = e^(−d/ν) E₂(d)/ν, and this gives ∂²G/∂d².
     e2 = np.array([float(mp.expint(2, x)) for x in d])
     e1 = np.array([float(mp.e1(x)) for x in d])
     np.testing.assert_allclose(by[0][0], -np.exp(-d / nu) * (e2 / nu + e1) / nu, rtol=1e-12)
@@ -191,7 +191,7 @@ def test_second_derivatives_are_finite_where_smooth():
 def truncated_average(exponent_cosine, cutoff: float) -> float:
     """Average g over the lights with |u·v| > `cutoff`, at d = 1 and v·n = 0.6.
 
-    `exponent_cosine` gives, from u·n and u·v, what stands beside v·n in the exponent.
+    `exponent_cosine` maps u·n and u·v to the factor that multiplies v·n in the exponent.
     """
     cos_v, nodes = 0.6, 300
     sin_v = np.sqrt(1 - cos_v**2)
@@ -206,8 +206,8 @@ def truncated_average(exponent_cosine, cutoff: float) -> float:
     return float(np.sum(weights[:, None] / 2 * kernel) / nodes)
 
 
-def test_the_printed_exponent_diverges_and_the_corrected_one_does_not():
-    """(u·v)(v·n) is negative for lights behind the view: e^(1/|u·v|) has no integral."""
+def test_printed_exponent_diverges_and_corrected_one_converges():
+    """(u·v)(v·n) is negative for u·v < 0, and then the integral of e^(1/|u·v|) diverges."""
     cutoffs = (0.2, 0.1, 0.05, 0.025)
     printed = [truncated_average(lambda cos_u, cos_uv: cos_uv, cutoff) for cutoff in cutoffs]
     assert all(value < 0 for value in printed)

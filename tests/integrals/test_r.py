@@ -1,4 +1,4 @@
-"""R: quadrature of the closed form, held to nested quadrature of the definition and to sampling."""
+"""R: its quadrature is compared with nested quadrature of the definition and with Monte Carlo."""
 
 import functools
 
@@ -14,7 +14,7 @@ from tests.integrals.differences import difference
 from tests.integrals.problems import RIGHT, upright_average
 
 EPS = np.finfo(float).eps
-# For derivatives at α ≥ 0.15, where it is as good as the default.
+# Enough nodes for derivatives at α ≥ 0.15.
 NODES = 24
 
 
@@ -41,7 +41,7 @@ def points(seed, count, least_alpha) -> np.ndarray:
     return np.stack([alpha, RIGHT * theta])
 
 
-def test_the_upright_fibre_has_a_closed_form():
+def test_upright_fibre_equals_its_closed_form():
     """Over all α: R = atan2(s (1 + α²), 1 + α² + 2α⁴)/s with s = 2α √(1 − α²)."""
     alpha = np.append(np.exp(np.random.default_rng(0).uniform(np.log(1e-3), 0, 47)), 1.0)
     value, error = quadrature()(alpha, np.zeros_like(alpha))
@@ -51,23 +51,34 @@ def test_the_upright_fibre_has_a_closed_form():
 
 
 @pytest.mark.parametrize("nodes", [24, 96])
-def test_the_quadrature_is_within_its_stated_error(nodes):
+def test_quadrature_is_within_its_stated_error(nodes):
     sample = np.concatenate([points(1, 16, least) for least in (0.15, 0.02, 1e-3)], axis=1)
     value, error = quadrature(nodes=nodes)(*sample)
     truth, finer = quadrature(nodes=320)(*sample)
     assert np.all(abs(value - truth) <= error + finer)
-    # The judge is finer than what it judges, up to roundings.
+    # The finer rule must be much better than the tested one, up to roundings.
     assert np.all(finer <= 0.25 * error + 1e-12)
 
 
-def test_the_stated_error_is_of_use():
+def test_stated_error_is_small():
     _, error = quadrature()(*points(2, 24, 0.15))
     assert np.all(error < 1e-12)
 
 
+def test_values_at_many_points_are_exact_to_2e_8():
+    """`R.values` uses fewer nodes for α ≥ 0.15. The least α is the hardest."""
+    hardest = np.array([(0.15, theta) for theta in np.linspace(0, RIGHT, 17)])
+    assert R.options_at(hardest) == {"nodes": 32}
+    exact = quadrature(nodes=160)(*hardest.T).value
+    np.testing.assert_allclose(R.values(hardest), exact, rtol=0, atol=2e-8)
+    lower = np.concatenate([hardest, [(0.1, 0.7)]])
+    assert R.options_at(lower) == {"nodes": 96}
+    np.testing.assert_allclose(R.values(lower)[:-1], exact, rtol=0, atol=1e-13)
+
+
 @pytest.mark.parametrize("point", [(0.4, 0.7)])
-def test_the_definition_nested_in_itself_agrees(point):
-    """The average of P_s by quadrature of the phase function: no closed form takes part."""
+def test_agrees_with_nested_quadrature_of_the_definition(point):
+    """Average the quadrature of P_s, so that no closed form is used."""
     alpha, theta_f = point
 
     def fraction(theta_u, phi):
@@ -98,8 +109,8 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
     assert np.all(error < 5e-3)
 
 
-def test_the_rule_averages_with_the_cosine():
-    """∫ (u·n)^k cos²φ (u·n) dω / π = 1/(k + 2)."""
+def test_average_over_lights_is_exact_for_powers_of_the_cosine():
+    """∫ (u·n)^k cos²φ (u·n) dω_u / π = 1/(k + 2)."""
     for power in (0, 1, 5):
         value = average_over_lights(
             lambda theta, phi, power=power: jnp.cos(theta) ** power * jnp.cos(phi) ** 2, 8
@@ -112,7 +123,7 @@ def corners() -> np.ndarray:
     return np.array([(alpha, theta) for alpha in (0.15, 0.5, 1.0) for theta in ends]).T
 
 
-def test_derivatives_are_finite_and_those_of_finite_differences():
+def test_derivatives_are_finite_and_equal_finite_differences():
     sample = np.concatenate([corners(), points(4, 22, 0.15)], axis=1)
     derivatives = gradient(jax.grad)(*sample)
     forward = gradient(jax.jacfwd)(*sample)
@@ -121,7 +132,7 @@ def test_derivatives_are_finite_and_those_of_finite_differences():
     def value(x):
         return quadrature(nodes=NODES)(*x).value
 
-    # Of fourth order in a thousandth of α, and roundings over the step.
+    # The error is of fourth order in step/α, plus roundings over the step.
     step = 1e-3 * sample[0]
     for axis, ends in enumerate([(1e-3, 1.0), (0.0, RIGHT)]):
         expected = difference(value, sample, axis, step, *ends)
@@ -133,7 +144,7 @@ def test_derivatives_are_finite_for_small_alpha():
     assert np.isfinite(gradient(jax.grad)(*sample)).all()
 
 
-def test_the_average_is_even_about_upright_and_lying_fibres():
+def test_slope_is_zero_for_upright_and_lying_fibres():
     alpha = np.array([0.15, 0.5, 0.15, 0.5])
     slope = gradient(jax.grad)(alpha, np.array([0.0, 0.0, RIGHT, RIGHT]))[1]
     np.testing.assert_allclose(slope, 0, atol=1e-13)
@@ -148,7 +159,7 @@ def test_second_derivatives_are_finite():
     np.testing.assert_allclose(second, second.swapaxes(1, 2), rtol=1e-10, atol=1e-10)
 
 
-def test_monte_carlo_counts_refuse_to_be_differentiated():
+def test_monte_carlo_has_no_derivative():
     def count(alpha):
         return R.monte_carlo(alpha, 0.5, samples=64).value
 

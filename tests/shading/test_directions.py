@@ -1,4 +1,4 @@
-"""Unit vectors, and angles between them where cosines round to one."""
+"""Unit vectors, and the sine of the angle between them where the cosine rounds to one."""
 
 import jax
 import jax.numpy as jnp
@@ -8,11 +8,11 @@ import numpy as np
 from shading import direction, direction_cosines, fiber_direction, sin2_between
 from tests.integrals.problems import RIGHT
 
-# Vectors of three roundings each, of sines and cosines.
+# Each component has about three roundings.
 UNIT = 4 * np.finfo(float).eps
 
 
-def test_directions_are_unit_vectors_in_the_frame_of_the_fibre():
+def test_directions_are_unit_vectors_with_the_given_angles():
     theta, phi = np.random.default_rng(0).uniform(0, np.pi, (2, 100))
     vectors = jax.vmap(direction)(theta, phi)
     np.testing.assert_allclose(jnp.linalg.norm(vectors, axis=1), 1, atol=UNIT)
@@ -22,7 +22,7 @@ def test_directions_are_unit_vectors_in_the_frame_of_the_fibre():
     np.testing.assert_allclose(fiber_direction(RIGHT), [1, 0, 0], atol=UNIT)
 
 
-def test_cosines_are_those_of_the_vectors():
+def test_direction_cosines_match_the_vectors():
     theta_f, theta, phi = np.random.default_rng(2).uniform(0, np.pi, (3, 100))
     cosines = jax.vmap(direction_cosines)(theta_f, theta, np.cos(phi))
     u, t = jax.vmap(direction)(theta, phi), jax.vmap(fiber_direction)(theta_f)
@@ -30,7 +30,7 @@ def test_cosines_are_those_of_the_vectors():
     np.testing.assert_allclose(jnp.stack(cosines), jnp.stack(expected), atol=UNIT)
 
 
-def test_the_sine_between_directions_keeps_its_relative_precision():
+def test_sin2_between_has_full_relative_precision():
     rng = np.random.default_rng(1)
     for scale in (1.0, 1e-3, 1e-7, 1e-11):
         for opposite in (False, True):
@@ -41,6 +41,6 @@ def test_the_sine_between_directions_keeps_its_relative_precision():
             with mp.workdps(50):
                 cosine = mp.cos(a) * mp.cos(b) + mp.sin(a) * mp.sin(b) * mp.cos(p)
                 exact = 1 - cosine**2
-            # Opposite directions are apart by π − θa − θb, which holds the roundings of π.
+            # The angle between opposite directions is π − θa − θb, so the rounding of π counts.
             allowed = 1e-14 + 4e-16 / scale * opposite
             assert abs(float(sin2_between(theta_a, theta_b, phi)) / exact - 1) < allowed

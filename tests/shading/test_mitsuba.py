@@ -1,6 +1,6 @@
-"""Mitsuba 3 as an independent judge of the SGGX phase function, its sampling, and P_s.
+"""The SGGX phase function, its sampling and P_s, compared with Mitsuba 3.
 
-Optional: `make toolchain-mitsuba` installs it.
+The tests are skipped without Mitsuba. `make toolchain-mitsuba` installs it.
 """
 
 import jax
@@ -21,13 +21,13 @@ from tests.batches import batched
 mitsuba = pytest.importorskip("mitsuba")
 mitsuba.set_variant("scalar_rgb")
 
-# Mitsuba's scalar variants compute in float32, and hold S in it.
+# The scalar variants of Mitsuba compute in float32 and store S in float32.
 FLOAT32 = 1e-6
 SAMPLES = 20_000
 
 
-def judge(matrix):
-    """Give Mitsuba's phase function of an SGGX matrix (3, 3), constant in space."""
+def mitsuba_phase_function(matrix):
+    """Return the phase function of Mitsuba for an SGGX matrix (3, 3) that is constant in space."""
     order = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
     grid = np.tile(np.array([matrix[i] for i in order], np.float32), (2, 2, 2, 1))
     volume = {"type": "gridvolume", "grid": mitsuba.VolumeGrid(grid), "raw": True}
@@ -35,7 +35,7 @@ def judge(matrix):
 
 
 def interaction(light):
-    """Give a point of a medium that is lit from the unit vector `light`."""
+    """Return a point of a medium that is lit from the unit vector `light`."""
     place = mitsuba.MediumInteraction3f()
     place.p = mitsuba.Point3f(0.5, 0.5, 0.5)
     place.wi = mitsuba.Vector3f(*map(float, light))
@@ -46,17 +46,18 @@ def interaction(light):
 def evaluate(matrix, light, view) -> float:
     context = mitsuba.PhaseFunctionContext()
     towards = mitsuba.Vector3f(*map(float, view))
-    return float(judge(matrix).eval_pdf(context, interaction(light), towards)[1])
+    return float(mitsuba_phase_function(matrix).eval_pdf(context, interaction(light), towards)[1])
 
 
 def samples(matrix, light, seed) -> tuple[np.ndarray, np.ndarray]:
-    """Draw views (n, 3) with their densities (n,) by Mitsuba, in a frame whose z axis is the light.
+    """Let Mitsuba draw views (n, 3), and return them with their densities (n,).
 
-    Only there do the samples of Mitsuba 3.9.1 follow its own density (docs/brdf.md).
+    They are drawn in a frame whose z axis is the light. Only there do the samples of Mitsuba 3.9.1
+    follow its own density (docs/brdf.md).
     """
     frame, _ = np.linalg.qr(np.column_stack([light, np.eye(3)[:, :2]]))
     frame = np.roll(frame * np.sign(frame[:, 0] @ light), -1, axis=1)
-    phase, place = judge(frame.T @ matrix @ frame), interaction((0.0, 0.0, 1.0))
+    phase, place = mitsuba_phase_function(frame.T @ matrix @ frame), interaction((0.0, 0.0, 1.0))
     context = mitsuba.PhaseFunctionContext()
     drawn = [
         phase.sample(context, place, float(x), mitsuba.Point2f(float(y), float(z)))
@@ -67,11 +68,11 @@ def samples(matrix, light, seed) -> tuple[np.ndarray, np.ndarray]:
 
 
 def rounded(matrix) -> np.ndarray:
-    """Give a matrix as Mitsuba holds it, so that only the evaluation is compared."""
+    """Round a matrix to float32 as Mitsuba does, so that only the evaluation is compared."""
     return np.asarray(matrix, np.float32).astype(float)
 
 
-def test_the_general_phase_function_agrees():
+def test_phase_function_of_random_matrices_agrees():
     rng = np.random.default_rng(0)
     ours, theirs = [], []
     for _ in range(100):
@@ -85,7 +86,7 @@ def test_the_general_phase_function_agrees():
     np.testing.assert_allclose(theirs, values, rtol=FLOAT32)
 
 
-def test_the_fibres_phase_function_agrees():
+def test_phase_function_of_fibres_agrees():
     fiber, light = np.asarray(fiber_direction(0.9)), np.asarray(direction(0.5, 0.3))
     root = np.asarray(fiber_root(fiber, 0.5))
     for theta, phi in ((0.2, 1.0), (1.2, -2.0), (2.5, 0.4)):
@@ -95,8 +96,8 @@ def test_the_fibres_phase_function_agrees():
 
 
 @pytest.mark.parametrize("theta_u", [0.3, 1.4])
-def test_samples_fall_where_ours_do(theta_u):
-    """Means of the drawn directions and of their squares, within five standard errors."""
+def test_samples_have_the_same_moments(theta_u):
+    """The means of the directions and of their squares agree within five standard errors."""
     light = np.asarray(direction(theta_u, 0.7))
     root = np.asarray(fiber_root(fiber_direction(0.9), 0.4))
     theirs, density = samples(root @ root.T, light, 1)
@@ -113,7 +114,7 @@ def test_samples_fall_where_ours_do(theta_u):
     assert np.median(np.abs(density / expected - 1)) < 5 * FLOAT32
 
 
-def test_p_s_is_what_its_samples_say():
+def test_ps_agrees_with_the_samples_of_mitsuba():
     points = np.array(
         [
             (0.2, 0.4, 0.3, 1.0),

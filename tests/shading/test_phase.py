@@ -1,4 +1,4 @@
-"""Phase functions: normalised as they promise, the right way round, differentiable everywhere."""
+"""Phase functions: normalisation, direction of scattering, derivatives."""
 
 import jax
 import jax.numpy as jnp
@@ -21,12 +21,12 @@ from shading import (
 )
 
 FIBER = np.asarray(fiber_direction(0.6))
-# The velvet lobe has a kink, which costs the adaptive rule some digits.
+# The kink of the velvet lobe costs the adaptive rule some digits.
 KINK_TOLERANCE = 1e-8
 
 
 def over_sphere(function):
-    """Integrate a function of unit vectors (n, 3) over the sphere, adaptively."""
+    """Integrate a function of unit vectors (n, 3) over the sphere by an adaptive rule."""
 
     def integrand(angles):
         return function(directions(*angles.T)) * np.sin(angles[:, 0])
@@ -41,7 +41,7 @@ LOBES = jax.jit(jax.vmap(velvet_lobe))
 
 
 @pytest.mark.parametrize("asymmetry", [-0.9, -0.3, 0.0, 0.5])
-def test_schlicks_phase_function_integrates_to_one(asymmetry):
+def test_schlick_phase_function_integrates_to_one(asymmetry):
     def over_cosines(nodes):
         cosines, weights = np.polynomial.legendre.leggauss(nodes)
         values = jax.vmap(schlick_phase_function, (None, 0))(asymmetry, cosines)
@@ -50,7 +50,7 @@ def test_schlicks_phase_function_integrates_to_one(asymmetry):
     np.testing.assert_allclose(over_cosines(200), 1, rtol=1e-13)
 
 
-def test_schlicks_mean_cosine_has_the_sign_of_its_asymmetry():
+def test_positive_asymmetry_scatters_forward():
     for asymmetry in (-0.6, 0.6):
         ahead, behind = (schlick_phase_function(asymmetry, c) for c in (1.0, -1.0))
         assert (ahead > behind) == (asymmetry > 0)
@@ -58,15 +58,15 @@ def test_schlicks_mean_cosine_has_the_sign_of_its_asymmetry():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("asymmetry", "theta"), [(-0.7, 0.0), (-0.7, 0.9)])
-def test_the_velvet_lobe_scatters_the_energy_that_is_stated(asymmetry, theta):
-    """The integral over v as it is defined, against the one over h."""
-    light = np.asarray(direction(theta + 0.6, 0.0))  # at the angle theta from the fibre
+def test_velvet_lobe_integrates_to_scattered_energy(asymmetry, theta):
+    """Compare the integral over v, as defined, with the one over h."""
+    light = np.asarray(direction(theta + 0.6, 0.0))  # at the angle `theta` from the fibre
     phase = jax.jit(jax.vmap(lambda v: velvet_lobe(asymmetry, half_vector(light, v) @ FIBER)))
     total = over_sphere(phase)
     assert abs(total - scattered_energy(asymmetry, np.cos(theta))) < KINK_TOLERANCE
 
 
-def test_the_velvet_lobe_backscatters_across_the_fibre():
+def test_velvet_lobe_scatters_back_and_across_the_fibre():
     along, across = velvet_lobe(-0.5, 1.0), velvet_lobe(-0.5, 0.0)
     np.testing.assert_allclose(across / along, 1 / (1 - 0.5) ** 2, rtol=1e-15)
     light = direction(1.2, 0.0)
@@ -76,13 +76,13 @@ def test_the_velvet_lobe_backscatters_across_the_fibre():
     assert backwards > 2 * mirrored
 
 
-def test_isotropic_velvet_is_uniform():
+def test_velvet_with_zero_asymmetry_is_uniform():
     value = velvet_phase_function(0.0, 0.3, VELVET.value(0.0))
     np.testing.assert_allclose(value, 1 / (4 * np.pi), rtol=1e-15)
 
 
 @pytest.mark.slow
-def test_the_fibres_phase_function_is_the_general_one():
+def test_fiber_phase_function_equals_the_general_one():
     rng = np.random.default_rng(0)
     for alpha in rng.uniform(0.1, 1, 3):
         light, view = (np.asarray(direction(*rng.uniform(0, 3, 2))) for _ in range(2))
@@ -92,7 +92,7 @@ def test_the_fibres_phase_function_is_the_general_one():
         )
 
 
-def test_derivatives_are_finite_up_to_the_kink():
+def test_velvet_lobe_derivatives_are_finite_at_the_kink():
     gradient = jax.jit(jax.vmap(jax.grad(velvet_lobe, (0, 1))))
     cosines = jnp.array([-1.0, -1 + 1e-12, 0.0, 0.4, 1 - 1e-12, 1.0])
     for asymmetry in (0.0, -0.5, -0.999):
@@ -104,7 +104,7 @@ def test_derivatives_are_finite_up_to_the_kink():
 
 
 @pytest.mark.slow
-def test_the_fibres_derivatives_are_finite():
+def test_fiber_phase_function_derivatives_are_finite():
     light, view = direction(0.5, 0.3), direction(1.2, 2.0)
     matrix = jax.jit(jax.jacfwd(fiber_phase_function, (0, 1, 2, 3)))(
         light, view, jnp.asarray(FIBER), 0.3

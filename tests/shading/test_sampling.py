@@ -1,4 +1,4 @@
-"""Reflections off visible normals follow the phase function: chi-square over the sphere."""
+"""Samples of the phase function follow its density, by a chi-square test over the sphere."""
 
 import jax
 import jax.numpy as jnp
@@ -14,7 +14,7 @@ from shading import (
     sample_phase_function,
 )
 
-# Chance that a correct sampler is rejected; the seed is fixed, so it is not by chance twice.
+# Probability that a correct sampler is rejected. The seed is fixed, so the result is reproducible.
 REJECTION = 1e-4
 COSINES, AZIMUTHS, POINTS = 16, 24, 60_000
 
@@ -33,10 +33,10 @@ _density = jax.jit(
 )
 
 
-def chance(views, density) -> float:
-    """Give the chance that views of that density deviate more than these do.
+def p_value(views, density) -> float:
+    """Return the p-value: the probability that views of this density deviate more than these.
 
-    Cells are equal in cos θ and φ; what is expected in each is by 12² Gauss points.
+    The bins are equal in cos θ and φ. Expected counts are integrals by 12² Gauss points.
     """
     x, weights = np.polynomial.legendre.leggauss(12)
     x, weights = (x + 1) / 2, weights / 2
@@ -62,22 +62,22 @@ def chance(views, density) -> float:
 
 @pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("name", ROOTS)
-def test_reflections_follow_the_phase_function(name, light):
+def test_samples_follow_the_phase_function(name, light):
     root, u = ROOTS[name], LIGHTS[light]
     views = np.asarray(_sample(root, u, np.random.default_rng(7).random((POINTS, 2))))
     np.testing.assert_allclose(np.linalg.norm(views, axis=1), 1, rtol=1e-13)
-    assert chance(views, lambda v: _density(root, u, v)) > REJECTION
+    assert p_value(views, lambda v: _density(root, u, v)) > REJECTION
 
 
-def test_a_wrong_density_is_noticed():
+def test_a_wrong_density_is_rejected():
     u, points = LIGHTS["high"], np.random.default_rng(7).random((POINTS, 2))
     views = np.asarray(_sample(fiber_root(fiber_direction(0.9), 0.33), u, points))
-    assert chance(views, lambda v: _density(ROOTS["fibre 0.3"], u, v)) < 1e-9
+    assert p_value(views, lambda v: _density(ROOTS["fibre 0.3"], u, v)) < 1e-9
     sides = np.asarray(_sample(ROOTS["fibre 0.3"], LIGHTS["grazing"], points))
-    assert chance(sides, lambda v: _density(ROOTS["fibre 0.3"], u, v)) < 1e-9
+    assert p_value(sides, lambda v: _density(ROOTS["fibre 0.3"], u, v)) < 1e-9
 
 
-def test_samples_are_differentiable_in_the_light():
+def test_samples_are_differentiable_with_respect_to_the_light():
     light = jnp.asarray(LIGHTS["high"])
     moved = jax.jit(jax.jacfwd(lambda u: sample_phase_function(_GENERAL, u, jnp.array([0.3, 0.7]))))
     assert np.isfinite(moved(light)).all()

@@ -1,4 +1,4 @@
-"""The SGGX distribution: normalised, general and fibre alike, sampled with its density."""
+"""The SGGX distribution: normalisation, fibres as a special case, sampling."""
 
 import jax
 import jax.numpy as jnp
@@ -22,14 +22,14 @@ from shading import (
     visible_normal,
 )
 
-# scipy's adaptive rule is asked for this and compared at ten times it.
+# The tolerance of SciPy's adaptive rule. Results are compared with ten times this tolerance.
 RULE_TOLERANCE = 1e-11
-# Chance that a correct sampler is rejected; the seed is fixed, so it is not by chance twice.
+# Probability that a correct sampler is rejected. The seed is fixed, so the result is reproducible.
 REJECTION = 1e-4
 
 
 def random_matrix(seed: int, least_axis: float = 0.2) -> np.ndarray:
-    """Give an SGGX matrix of random axes, the shortest at least `least_axis`."""
+    """Return an SGGX matrix with random axes whose lengths are from `least_axis` to 1."""
     rng = np.random.default_rng(seed)
     axes, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     matrix = (axes * rng.uniform(least_axis, 1, 3) ** 2) @ axes.T
@@ -37,7 +37,7 @@ def random_matrix(seed: int, least_axis: float = 0.2) -> np.ndarray:
 
 
 def around(axis, theta, phi):
-    """Give unit vectors at angle `theta` from `axis`."""
+    """Return unit vectors (n, 3) at the angles `theta` from `axis` and azimuths `phi` about it."""
     axis = np.asarray(axis)
     first = np.cross(axis, [1.0, 0, 0] if abs(axis[0]) < 0.7 else [0, 1.0, 0])
     first /= np.linalg.norm(first)
@@ -63,7 +63,7 @@ SAMPLE = jax.jit(jax.vmap(sample_visible_normal, (None, None, 0)))
 
 
 def over_sphere(function, axis, upper):
-    """Integrate over the directions within the angle `upper` of `axis`, adaptively."""
+    """Integrate over the directions within the angle `upper` of `axis` by an adaptive rule."""
 
     def integrand(angles):
         return function(around(axis, *angles.T)) * np.sin(angles[:, 0])
@@ -75,20 +75,20 @@ def over_sphere(function, axis, upper):
 
 @pytest.mark.parametrize("name", MATRICES)
 @pytest.mark.parametrize("light", range(len(LIGHTS)))
-def test_the_phase_function_integrates_to_one_over_the_sphere(name, light):
+def test_phase_function_integrates_to_one(name, light):
     u = LIGHTS[light]
     total = over_sphere(lambda v: PHASE(MATRICES[name], u, v), u, np.pi)
     assert abs(total - 1) < 10 * RULE_TOLERANCE
 
 
 @pytest.mark.parametrize("name", MATRICES)
-def test_the_projected_area_is_that_of_the_normals_in_sight(name):
+def test_projected_area_is_the_integral_over_visible_normals(name):
     u, matrix = LIGHTS[1], MATRICES[name]
     area = over_sphere(lambda h: DISTRIBUTION(matrix, h) * (h @ u), u, np.pi / 2)
     assert abs(area - projected_area(matrix, u)) < 10 * RULE_TOLERANCE
 
 
-def test_the_phase_function_is_reciprocal_up_to_the_projected_area():
+def test_phase_function_times_projected_area_is_reciprocal():
     u, v = LIGHTS[1], LIGHTS[2]
     for matrix in MATRICES.values():
         there = phase_function(matrix, u, v) * projected_area(matrix, u)
@@ -96,12 +96,12 @@ def test_the_phase_function_is_reciprocal_up_to_the_projected_area():
         np.testing.assert_allclose(there, back, rtol=1e-14)
 
 
-def test_the_fibre_is_a_case_of_the_general_matrix():
+def test_fiber_functions_equal_the_general_ones():
     rng = np.random.default_rng(3)
     for alpha, theta_f in zip(rng.uniform(0.05, 1, 20), rng.uniform(0, np.pi / 2, 20), strict=True):
         fiber, h = fiber_direction(theta_f), np.asarray(direction(*rng.uniform(0, 3, 2)))
         matrix, root = fiber_matrix(fiber, alpha), fiber_root(fiber, alpha)
-        # S holds α² next to one: a rounding of S is 1/α² roundings of D.
+        # S adds α² to numbers of order one, so a rounding of S becomes 1/α² roundings of D.
         rounding = 8 * np.finfo(float).eps / alpha**2
         np.testing.assert_allclose(root @ root.T, matrix, atol=1e-15)
         np.testing.assert_allclose(
@@ -114,13 +114,13 @@ def test_the_fibre_is_a_case_of_the_general_matrix():
         )
 
 
-def test_the_root_of_a_fibre_keeps_the_smallest_alpha():
+def test_fiber_root_keeps_a_small_alpha_exactly():
     for alpha in (1e-3, 1e-9, 1e-15):
         fiber = fiber_direction(0.0)
         assert float(fiber @ fiber_root(fiber, alpha) @ fiber) == alpha
 
 
-def test_a_reflection_is_one():
+def test_reflect_is_a_reflection():
     normals = np.random.default_rng(4).normal(size=(50, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     u = LIGHTS[1]
@@ -132,11 +132,11 @@ def test_a_reflection_is_one():
     np.testing.assert_allclose(jnp.sum(mirrored * normals, 1), normals @ u, atol=1e-14)
 
 
-def chi_square(matrix, light, normals) -> float:
-    """Give the chance that normals of the right density would deviate more than these do.
+def p_value(matrix, light, normals) -> float:
+    """Return the p-value: the probability that normals of this density deviate more than these.
 
-    Cells are a grid of 12 cosines to the light by 16 azimuths; the expected counts integrate
-    D(m) (u·m) / σ(u) over each by 8² Gauss points.
+    The bins are 12 in the cosine with the light by 16 in azimuth. The expected count of a bin is
+    the integral of D(m) (u·m) / σ(u) by 8² Gauss points.
     """
     cosines, azimuths = 12, 16
     x, weights = np.polynomial.legendre.leggauss(8)
@@ -170,18 +170,18 @@ def test_visible_normals_follow_their_density(name, light):
     normals = SAMPLE(matrix, u, points)
     np.testing.assert_allclose(jnp.linalg.norm(normals, axis=1), 1, rtol=1e-14)
     assert jnp.all(normals @ u >= 0)
-    assert chi_square(matrix, u, normals) > REJECTION
+    assert p_value(matrix, u, normals) > REJECTION
 
 
-def test_any_root_of_the_matrix_samples_the_same_density():
+def test_any_square_root_gives_the_same_density():
     fiber, alpha, u = fiber_direction(0.9), 0.3, LIGHTS[1]
     points = np.random.default_rng(6).random((100_000, 2))
     normals = jax.vmap(visible_normal, (None, None, 0))(fiber_root(fiber, alpha), u, points)
-    assert chi_square(MATRICES["fibre 0.3"], u, normals) > REJECTION
+    assert p_value(MATRICES["fibre 0.3"], u, normals) > REJECTION
 
 
-def test_a_wrong_density_is_noticed():
+def test_a_wrong_density_is_rejected():
     wrong, u = fiber_matrix(fiber_direction(0.9), 0.32), LIGHTS[1]
     points = np.random.default_rng(5).random((100_000, 2))
     normals = SAMPLE(wrong, u, points)
-    assert chi_square(MATRICES["fibre 0.3"], u, normals) < 1e-9
+    assert p_value(MATRICES["fibre 0.3"], u, normals) < 1e-9
