@@ -77,12 +77,9 @@ class CallingConvention:
 
     def _only(self, fitted: FittedForm) -> Function:
         form, constants = fitted.form, fitted.constants
-        order = [self._place(fitted, argument) for argument in self.arguments]
 
         def value(*given):
-            clamped = self._clamped(fitted, given)
-            point = [clamped[order.index(k)] for k in range(len(form.axes))]
-            return form(jnp.asarray(constants), *point)
+            return form(jnp.asarray(constants), *self._point(fitted, given))
 
         summary = self.summary.format(equation=_equation(fitted))
         return function(self.name, self._parameters(fitted), value, summary)
@@ -123,21 +120,41 @@ class CallingConvention:
             for argument, axis in pairs
         )
 
+    def _point(self, fitted: FittedForm, given: tuple[Any, ...]) -> list[Any]:
+        """Clamp arguments, and bring them into the order of the form's axes."""
+        order = [self._place(fitted, argument) for argument in self.arguments]
+        # No assignment to a name: the traced program would take it over.
+        return [
+            value
+            for _, value in sorted(
+                zip(order, self._clamped(fitted, given), strict=True), key=lambda pair: pair[0]
+            )
+        ]
+
     def _clamped(self, fitted: FittedForm, given: tuple[Any, ...]) -> list[Any]:
         """Clamp arguments to the form's domain, the last one first."""
         values = list(given)
-        axes = self._axes(fitted)
         for k in reversed(range(len(values))):
-            argument, axis = self.arguments[k], axes[k]
-            if argument.clamp == "none":
-                continue
-            inside = jnp.minimum(values[k], float(axis.upper))
-            if argument.clamp == "both":
-                inside = jnp.maximum(inside, float(axis.lower))
-            values[k] = inside if argument.local is None else checkpoint_name(
-                inside, argument.local
-            )  # fmt: skip
+            # No assignment to a name: the traced program would take it over.
+            values[k] = _inside(values[k], self.arguments[k], self._axes(fitted)[k])
         return values
+
+
+def _inside(value: Any, argument: Argument, axis: Axis) -> Any:
+    """Clamp one argument, and name the result as the convention says."""
+    if argument.clamp == "none":
+        return value
+    if argument.clamp == "both":
+        return _called(_clamped(value, float(axis.lower), float(axis.upper)), argument.local)
+    return _called(jnp.minimum(value, float(axis.upper)), argument.local)
+
+
+def _clamped(value: Any, lower: float, upper: float) -> Any:
+    return jnp.maximum(jnp.minimum(value, upper), lower)
+
+
+def _called(value: Any, name: str | None) -> Any:
+    return value if name is None else checkpoint_name(value, name)
 
 
 def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:

@@ -27,11 +27,14 @@ class Quotients:
     def __call__(self, coefficients: Array | np.ndarray, *point) -> Array:
         """Evaluate the quotient, or all rows (rows,), at one point."""
         x, factor = self.features(*point), self.factor(*point)
-        split = self.above + 1
-        numerator = coefficients[..., 0] + coefficients[..., 1:split] @ x
-        denominator = 1 + coefficients[..., split:] @ x[: self.below]
-        offset = self.offset if isinstance(self.offset, float) else jnp.array(self.offset)
-        return offset + factor * numerator / denominator
+        c, split = coefficients, self.above + 1
+        if isinstance(self.offset, float):
+            above, below = c[1:split] @ x, c[split:] @ x[: self.below]
+            return self.offset + factor * (c[0] + above) / (1 + below)
+        # The rows' numerators and denominators keep these names in exported code.
+        numerator = c[:, 0] + c[:, 1:split] @ x
+        denominator = 1 + c[:, split:] @ x[: self.below]
+        return jnp.array(self.offset) + factor * numerator / denominator
 
     def positive(self, coefficients: Array | np.ndarray, *point) -> Array:
         """Return the denominator, or the least of the rows' denominators, at one point."""

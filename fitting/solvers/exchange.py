@@ -5,7 +5,7 @@ where the goal asks for it, and the worst points of elsewhere are added in turn 
 coefficients are rounded in turns, those that matter most first, and the others are fitted again.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import jax
 import jax.numpy as jnp
@@ -49,8 +49,8 @@ class Exchange:
     exchanged: int = 300
     settled: float = 1e-3
     turns: int = 4
-    minimax: Minimax = Minimax()
-    minimax_of_rounding: Minimax = Minimax(programs=6)
+    minimax: Minimax = field(default_factory=Minimax)
+    minimax_of_rounding: Minimax = field(default_factory=lambda: Minimax(programs=6))
 
     def fit(
         self, form: Form, goal: Goal, measure: str, start: np.ndarray | None, progress: Progress

@@ -113,9 +113,7 @@ class Separable:
                 return outer * jnp.einsum("tij,atj->ati", factors, apart)
 
             targets = optimum.reshape(-1, shape[2])
-            return fit_quotients(
-                self.shape, points, penalised, root, targets, errors, self.steps
-            )
+            return fit_quotients(self.shape, points, penalised, root, targets, errors, self.steps)
 
         return fit(grid.points, penalty_points(grid.axes), fits.factors, fits.optimum)
 

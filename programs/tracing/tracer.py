@@ -66,11 +66,13 @@ def _inline(
     values: dict[Any, Any] = dict(zip(jaxpr.constvars, map(np.asarray, closed.consts), strict=True))
     values.update(zip(jaxpr.invars, inputs, strict=True))
     hints = _hints(jaxpr.eqns, within)
-    for equation, hint in zip(jaxpr.eqns, hints, strict=True):
+    for equation, assigned in zip(jaxpr.eqns, hints, strict=True):
         operands = [
             np.asarray(v.val) if isinstance(v, Literal) else values[v] for v in equation.invars
         ]
         results = _run(name, builder, equation, operands)
+        # jax.ad_checkpoint.checkpoint_name names a value where no assignment does.
+        hint = equation.params["name"] if equation.primitive.name == "name" else assigned
         if hint is not None and len(results) == 1:
             _name_all(builder, results[0], hint)
         values.update(zip(equation.outvars, results, strict=True))

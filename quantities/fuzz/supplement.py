@@ -71,7 +71,7 @@ RATIONAL_PS = Form(
     coefficient_names=[[f"c{i}: {name}" for name in _ROW_NAMES] for i in range(6)],
     stages=(
         Stage(
-            lambda c, alpha, theta_f: PS_ROWS(c, alpha, theta_f),
+            PS_ROWS,
             "Coefficients c of {name} for one material (Eq. 2); clamps to the domain.",
         ),
         Stage(
@@ -135,7 +135,7 @@ RATIONAL_R = Form(
     reference=R,
     axes=(replace(R.axes[0], lower=0.15, open_below=False), R.axes[1]),
     coefficient_names=["t", *(f"p {x}" for x in TERMS), *(f"q {x}" for x in TERMS[:_BELOW_R])],
-    stages=(Stage(lambda c, alpha, theta_f: R_QUOTIENT(c, alpha, theta_f)),),
+    stages=(Stage(R_QUOTIENT),),
     proofs=Proofs(positive=R_QUOTIENT.positive),
     solver=OnGrid(
         trapezoid_grid,

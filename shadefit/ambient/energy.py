@@ -3,7 +3,7 @@
 import jax
 import numpy as np
 
-from integrals.fuzz.radiance import hemisphere_rule
+from integrals.rules.hemisphere import hemisphere_rule
 from integrals.rules.interval import gauss_legendre
 from shadefit.ambient.errors import COSINES, RULE, Radiances, place_of
 from shading import deferred_radiance, direction

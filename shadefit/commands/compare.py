@@ -56,7 +56,9 @@ def contestants(entry: "Entry") -> "list[tuple[str, Entry]]":
     if as_printed is not None:
         labelled = [("published, corrected", corrected), ("published, as printed", as_printed)]
     if entry.kind not in ("published", "printed"):
-        labelled.append((f"refitted {entry.name}" if entry.kind == "refitted" else entry.name, entry))
+        labelled.append(
+            (f"refitted {entry.name}" if entry.kind == "refitted" else entry.name, entry)
+        )
     return labelled
 
 

@@ -95,9 +95,7 @@ def _print_json(quantity: str, result: "Result", good: "list[Found]") -> None:
     )
 
 
-def _print(
-    quantity: str, result: "Result", good: "list[Found]", limit: str, drawn: Path
-) -> None:
+def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, drawn: Path) -> None:
     from shadefit.terminal import print_table
 
     first = [] if result.published is None else [result.published]

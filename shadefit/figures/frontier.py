@@ -7,13 +7,13 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from coefficients.shaders import exact_ps, shader
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from coefficients.catalogue import form_of, load
 from coefficients.compare import compare
-from coefficients.shaders import exact_ps, shader
 from fitting import off_grid_reference
 from integrals import INTEGRALS
 from integrals.fuzz.g import ambient_scattering

@@ -1,14 +1,14 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from fitting.families.ps import two_root_ps
+from fitting.paper import terms
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coefficients.catalogue import form_of, load
 from fitting import PAPER_FORMS, QuadraticQ, RationalG, RationalPs, RationalR
-from fitting.families.ps import two_root_ps
 from fitting.form import Form, as_program
-from fitting.paper import terms
 from fitting.proofs import pole_proof as certificate
 from fitting.proofs.pole_proof import TIGHTNESS, certify_denominators
 from programs.bounding import branch_and_bound as branch

@@ -3,11 +3,11 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from fitting.families.ps import cubic_ps, one_root_ps, two_root_ps
 
 from coefficients.catalogue import form_of, load, names_of_best
 from fitting import PAPER_FORMS, QuadraticQ
 from fitting.errors import check_reference, form_values
-from fitting.families.ps import cubic_ps, one_root_ps, two_root_ps
 from fitting.form import traced
 from fitting.points.scattered import spread_points
 from fitting.proofs.range_proof import ROUNDING, TIGHTNESS, certify_range

@@ -74,7 +74,11 @@ def test_what_does_not_vary_is_not_counted_twice():
     assert count_operations(program, []) == Cost()
     arrays = trace(ARRAYS)
     assert count_operations(arrays, ["x"]) == Cost(add=1, mul=2, fma=1)
-    assert count_operations(arrays, ["c[1]"]).transcendental == count_operations(arrays, ["c"]).transcendental == 1
+    assert (
+        count_operations(arrays, ["c[1]"]).transcendental
+        == count_operations(arrays, ["c"]).transcendental
+        == 1
+    )
     assert count_operations(arrays, ["c[0]"]) == Cost(add=1, fma=1)
 
 
@@ -97,7 +101,9 @@ def test_both_sides_of_the_measurement_compute_the_same(function):
 @needs_gcc
 def test_a_wrong_compilation_shows(monkeypatch):
     right = timing.write_source
-    monkeypatch.setattr(timing, "write_source", lambda *given: right(*given).replace("0.5f", "0.75f"))
+    monkeypatch.setattr(
+        timing, "write_source", lambda *given: right(*given).replace("0.5f", "0.75f")
+    )
     assert measure_throughput(SCALAR, points=500, rounds=1).difference > 0.1
 
 

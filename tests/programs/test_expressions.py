@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from programs.functions import Function, Parameter, group_inputs
-from programs.languages import PRECISIONS, LANGUAGES
+from programs.languages import LANGUAGES, PRECISIONS
 from programs.printing.printer import write_source
 from programs.program import evaluate
 from programs.tracing.tracer import trace

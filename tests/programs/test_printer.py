@@ -455,7 +455,9 @@ def test_no_header_leaves_its_comment(key):
 
 
 def test_units_and_domains_stand_above_the_function():
-    assert "// alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad.\n" in write_source(COEFFICIENTS, "c")
+    assert "// alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad.\n" in write_source(
+        COEFFICIENTS, "c"
+    )
 
 
 def test_python_takes_arrays_that_broadcast():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from programs.functions import Function, Parameter
-from programs.toolchains import cuda, hlsl, osl, toolchain
 from programs.precision import number_type
+from programs.toolchains import cuda, hlsl, osl, toolchain
 
 UNIT = (-1.0, 1.0)
 SCALAR = Function("Ratio", "one in, one out", (Parameter("x", UNIT),), None, "y", lambda x: x)

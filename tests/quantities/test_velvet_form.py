@@ -7,15 +7,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from coefficients.shaders import functions_of
+from fitting.velvet import MARGIN, ConservativeNorm, certify_conservative, fit_conservative_norm
+from programs.function import Function, Parameter
 
 from coefficients.catalogue import form_of, load
-from coefficients.shaders import functions_of
 from fitting.points.grids import trapezoid_grid
 from fitting.proofs.pole_proof import certify_denominators
-from fitting.velvet import MARGIN, ConservativeNorm, certify_conservative, fit_conservative_norm
 from integrals import VELVET
 from integrals.fuzz.velvet import normalisation
-from programs.function import Function, Parameter
 from programs.program import evaluate
 from programs.tracing.tracer import trace
 
