@@ -1,33 +1,10 @@
 """Files that are written whole or not at all."""
 
 import os
-import shutil
 import tempfile
-from collections.abc import Generator
-from contextlib import contextmanager
 from pathlib import Path
 
-# Files and folders that are removed if the program ends before they are done.
-_UNFINISHED: set[Path] = set()
-
-
-@contextmanager
-def unfinished(path: Path) -> Generator[Path, None, None]:
-    """Note a file or folder that is for a while only: it is removed if the program is ended."""
-    _UNFINISHED.add(path)
-    try:
-        yield path
-    finally:
-        _UNFINISHED.discard(path)
-
-
-def discard_unfinished() -> None:
-    """Remove what is for a while only: the program is about to be ended."""
-    for path in tuple(_UNFINISHED):
-        if path.is_dir():
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink(missing_ok=True)
+from programs.toolchains.temporary import unfinished
 
 
 def require_writable(folder: Path) -> None:

@@ -29,9 +29,9 @@ def main() -> None:
 
 def _wait_for_interruption(reader: int) -> None:
     os.read(reader, 1)
-    files = sys.modules.get("coefficients.files")
-    if files is not None:
-        files.discard_unfinished()
+    temporary = sys.modules.get("programs.toolchains.temporary")
+    if temporary is not None:
+        temporary.discard_unfinished()
     kept = _KEPT.get(next(iter(sys.argv[1:]), ""), "no file is half written")
     cursor = _SHOW_CURSOR if sys.stderr.isatty() else ""
     os.write(2, f"{cursor}shadefit: interrupted; {kept}\n".encode())

@@ -108,5 +108,6 @@ def within(allowed: tuple[float, float]) -> Settled:
 
 def operands(program: Program, operation: str, place: int) -> list[int]:
     """List the values, without constants, that are operand number `place` of an operation."""
-    found = {step.operands[place] for step in program.steps if step.operation == operation}
-    return sorted(filter(is_value, found))
+    # Constants are left out first: in a set, the constant 3.0 would hide the value number 3.
+    found = (step.operands[place] for step in program.steps if step.operation == operation)
+    return sorted(set(filter(is_value, found)))

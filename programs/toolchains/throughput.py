@@ -29,7 +29,7 @@ FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math")
 
 @dataclass(frozen=True)
 class Throughput:
-    """Evaluations per second in float32: compiled C on one thread, and JAX on any number of threads.
+    """Evaluations per second in float32: compiled C on one thread, JAX on any number of threads.
 
     `difference` is the largest difference between their results.
     """

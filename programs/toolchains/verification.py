@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -37,6 +37,7 @@ LEAST_UNITS = 4.0
 Run = Callable[[Function, np.ndarray], np.ndarray]
 
 
+@runtime_checkable
 class DomainAxis(Protocol):
     """One side of a domain, as far as `corners` needs to know it; `period` is None or a number."""
 

@@ -43,8 +43,8 @@ def compute_shader(source: str, function: Function, precision: str) -> str:
         array="var {name}: array<{real}, {size}>;",
         given="&shadefit_value",
     )
-    # Directives must come first, and may be repeated. On the first line of the source, this one does
-    # not change the line numbers.
+    # A directive must come first, and may be repeated. It is put on the first line of the source so
+    # that line numbers do not change.
     head = "enable f16; " if precision == "half" else ""
     return f"""{head}{source}
 @group(0) @binding(0) var<storage, read> shadefit_in: array<f32>;

@@ -1,4 +1,4 @@
-"""Random scalar expressions: traced, printed in Python and C, run, and held to JAX."""
+"""Random scalar expressions are traced, printed in Python and C, run, and compared with JAX."""
 
 import ctypes
 import shutil
@@ -19,8 +19,8 @@ from programs.printing.printer import write_source
 from programs.program import evaluate
 from programs.tracing.tracer import trace
 
-# Every node below is bounded by 2 and changes by at most twice what its operands change by: a dozen
-# of them amplify the roundings of libraries that differ by an ulp to no more than this.
+# Every node below is at most 2 and amplifies a change of its operands at most twice. A dozen nodes
+# amplify a difference of one unit in the last place to less than this.
 TOLERANCE = {"float": 1e-3, "double": 1e-12}
 
 WEIGHTS = np.array([0.25, -0.5, 0.125])
@@ -58,16 +58,16 @@ LEAVES = st.one_of(
 )
 
 
-def _grow(children):
+def _extended(children):
     return st.one_of(
         st.tuples(st.sampled_from(sorted(UNARY)), children),
         st.tuples(st.sampled_from(sorted(BINARY)), children, children),
-        # The condition is a matter of the inputs alone: no rounding can turn it over.
+        # The condition compares inputs with constants, so that rounding cannot change it.
         st.tuples(st.just("where"), st.floats(-1, 1, width=16), children, children),
     )
 
 
-TREES = st.recursive(LEAVES, _grow, max_leaves=12)
+TREES = st.recursive(LEAVES, _extended, max_leaves=12)
 
 
 def compute(tree, inputs):
@@ -86,7 +86,7 @@ def compute(tree, inputs):
 
 
 def function_of(*trees) -> Function:
-    """Make a function of x, y and an array z of two: one result, or as many as there are trees."""
+    """Make a function of x, y and an array z of two, with one result for each tree."""
 
     def call(x, y, z):
         inputs = {"x": x, "y": y, "z[0]": z[0], "z[1]": z[1]}
@@ -123,9 +123,9 @@ def test_a_program_computes_what_jax_computes(one, other):
 
 @settings(max_examples=60, deadline=None)
 @given(TREES)
-def test_no_two_steps_of_a_program_are_equal_and_each_is_used(tree):
+def test_steps_of_a_program_are_distinct_and_used(tree):
     program = trace(function_of(tree))
-    # (As text: 0.0 and -0.0 are equal, and two constants.)
+    # Operands are compared as text, because 0.0 and -0.0 are equal but different constants.
     assert len({(step.operation, repr(step.operands)) for step in program.steps}) == len(
         program.steps
     )
@@ -145,7 +145,7 @@ def run_python(source, function, rows):
 
 @settings(max_examples=60, deadline=None)
 @given(TREES, TREES, st.sampled_from(sorted(PRECISIONS)), st.sampled_from(["inline", "table"]))
-def test_printed_python_is_the_program_to_the_last_bit(one, other, precision, constants):
+def test_printed_python_equals_the_program_to_the_last_bit(one, other, precision, constants):
     function = function_of(one, other)
     rows = points(16).astype(PRECISIONS[precision])
     source = write_source(function, "python", precision, constants=constants)
@@ -168,7 +168,7 @@ void run(long n, const {real} *in, {real} *out)
     with TemporaryDirectory() as folder:
         path = Path(folder, "printed.c")
         path.write_text(source + driver)
-        # Warnings would be wrong parentheses, unused values, shadowed names.
+        # gcc warns of misleading parentheses, unused variables and shadowed names.
         flags = (
             "-std=c99 -O1 -ffp-contract=off -Wall -Wextra -Wshadow -Wno-unused-parameter -Werror"
         )
@@ -208,7 +208,7 @@ def test_printed_c_computes_what_the_program_does(one, other, precision, constan
 
 @settings(max_examples=40, deadline=None)
 @given(TREES, st.sampled_from(sorted(LANGUAGES)), st.sampled_from(["inline", "table"]))
-def test_every_language_keeps_to_the_line(tree, language, constants):
+def test_printed_lines_are_short_clean_and_reproducible(tree, language, constants):
     precision = next(iter(reversed(LANGUAGES[language].types)))
     if "double" in LANGUAGES[language].types and language in ("glsl", "hlsl", "slang"):
         precision = "float"

@@ -1,4 +1,4 @@
-"""Enclosures against exact arithmetic: every sampled value and slope must lie inside."""
+"""Enclosures compared with exact arithmetic: every sampled value and slope must lie inside."""
 
 import itertools
 
@@ -26,7 +26,7 @@ Step = type(program_of(lambda x, y: x + y).steps[0])
 
 
 class Jet:
-    """A number of 40 digits with its gradient: the judge, sharing no code with the enclosures."""
+    """A number of 40 digits with its gradient; it shares no code with the enclosures."""
 
     def __init__(self, value, gradient=(0, 0)):
         self.value, self.gradient = mpmath.mpf(value), [mpmath.mpf(g) for g in gradient]
@@ -76,7 +76,7 @@ EXACT = {
 
 
 def exactly(program: Program, point) -> Jet | None:
-    """Evaluate a program at a point; None where it is not defined or not differentiable."""
+    """Evaluate a program at a point; None if it is not defined or not differentiable there."""
     unit = np.eye(INPUTS)
     try:
         with mpmath.workdps(40):
@@ -90,7 +90,7 @@ def exactly(program: Program, point) -> Jet | None:
 
 
 def enclosures(program: Program, lower, upper):
-    """Give the intervals of the value, as `enclose` has it, and of the gradient."""
+    """Return the interval of the value, as `enclose` does, and that of the gradient."""
     lower, upper = np.atleast_2d(lower).astype(float), np.atleast_2d(upper).astype(float)
     (value,) = interval.enclose(program, lower, upper)
     inputs = [interval._variable(k, lower, upper) for k in range(INPUTS)]
@@ -102,7 +102,7 @@ def enclosures(program: Program, lower, upper):
 
 
 def inside(number, bounds, *index) -> bool:
-    """Tell whether an exact number lies in an interval; one without bounds holds everything."""
+    """Return whether an exact number lies in an interval; a bound that is NaN is no bound."""
     lower, upper = bounds.lower[index], bounds.upper[index]
     above = np.isnan(lower) or mpmath.mpf(float(lower)) <= number
     return bool(above and (np.isnan(upper) or number <= mpmath.mpf(float(upper))))
@@ -112,7 +112,7 @@ UNARY = ("neg", "sqrt", "exp", "log", "cos", "sin", "square")
 BINARY = ("add", "sub", "mul", "div", "max", "min", "choose")
 NUMBERS = st.sampled_from([-2.0, -0.7, 0.1, 0.5, 1.0, 3.0])
 POSITIONS = st.integers(0, 20)
-# An operation, which values it takes (counted from the latest) or a constant, and a factor.
+# An operation; its operands, as positions counted from the latest value, or a constant; a factor
 RECIPES = st.lists(
     st.tuples(st.sampled_from(UNARY), POSITIONS, st.none(), st.none() | NUMBERS)
     | st.tuples(st.sampled_from(BINARY), POSITIONS, POSITIONS | NUMBERS, st.none() | NUMBERS),
@@ -122,7 +122,7 @@ RECIPES = st.lists(
 
 
 def built(recipe) -> Program:
-    """Make a straight-line program of two inputs, whose values are used in any order."""
+    """Make a straight-line program of two inputs from a recipe."""
     steps, values = [], list(range(INPUTS))
 
     def add(operation, *operands):
@@ -156,7 +156,7 @@ def test_every_value_and_slope_on_a_box_lies_in_its_enclosure(recipe, corner, si
     ends = [np.where(at, upper, lower) for at in itertools.product((False, True), repeat=INPUTS)]
     inner = [np.clip(lower + np.array(p) * (upper - lower), lower, upper) for p in places]
     jets = [exactly(program, point) for point in (*ends, *inner)]
-    # A box on part of which the expression has no value is enclosed by whatever may be.
+    # If the expression has no value on a part of the box, any enclosure is right.
     assume(all(jet is not None for jet in jets))
     value, gradient = enclosures(program, lower, upper)
     for jet in jets:
@@ -166,7 +166,7 @@ def test_every_value_and_slope_on_a_box_lies_in_its_enclosure(recipe, corner, si
 
 
 TIGHT = {
-    # expression, box, exact range: what the two extensions together must not overestimate
+    # expression, lower and upper corner of the box, exact range
     "sum": (lambda x, y: x + y, (0, 1), (2, 3), (1.0, 5.0)),
     "square": (lambda x, y: x * x, (-1, 0), (2, 1), (0.0, 4.0)),
     "reciprocal": (lambda x, y: 1 / x, (2, 0), (4, 1), (0.25, 0.5)),
@@ -185,7 +185,7 @@ TIGHT = {
 
 
 @pytest.mark.parametrize("name", TIGHT)
-def test_simple_ranges_are_enclosed_to_rounding(name):
+def test_simple_ranges_are_enclosed_tightly(name):
     call, lower, upper, (low, high) = TIGHT[name]
     value, _ = enclosures(program_of(call), lower, upper)
     width = 1e-14 if name != "monotone by its slope" else 5e-5
@@ -202,7 +202,7 @@ UNBOUNDED = {
 
 
 @pytest.mark.parametrize("name", UNBOUNDED)
-def test_where_there_is_a_pole_no_bound_is_claimed(name):
+def test_a_pole_has_no_bound(name):
     value, _ = enclosures(program_of(UNBOUNDED[name]), (-1, -1), (1, 1))
     assert not np.isfinite(value.lower[0])
 
@@ -220,11 +220,11 @@ def test_smaller_boxes_have_tighter_bounds():
         lower = np.array(list(itertools.product(ends[:-1], repeat=2)))
         value, _ = enclosures(program, lower, lower + 2 / parts)
         gaps.append(exact - value.lower.min())
-    # The mean value form converges with the square of the side.
+    # The error of the mean value form is proportional to the square of the side.
     assert gaps[0] > 10 * gaps[1] > 100 * gaps[2] > 0
 
 
-def test_several_boxes_are_enclosed_as_each_alone():
+def test_boxes_enclosed_together_have_the_same_bounds_as_alone():
     program = program_of(lambda x, y: jnp.exp(x) / (2 + y))
     lower = np.array([[0.0, 0.0], [-1.0, 1.0], [2.0, -1.5]])
     together, slopes = enclosures(program, lower, lower + 0.5)

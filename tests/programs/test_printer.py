@@ -1,3 +1,5 @@
+"""Printing: names, parentheses, literals, signatures, comments, and what is refused."""
+
 import ctypes
 import re
 from dataclasses import replace
@@ -25,13 +27,13 @@ def of_scalars(call, names="x", result=None, name="Example"):
 
 
 def one_line(call, names="x", language="c", precision="double"):
-    """Give the expression that a function of one statement returns."""
+    """Return the expression that a function of one statement returns."""
     source = write_source(of_scalars(call, names), language, precision)
     return re.search(r"return (.*);", source)[1]
 
 
 def rational(alpha, thetaF, count=6):
-    """A rational form as the paper's: sines, powers, one clamp."""
+    """A rational function with sines, powers and a clamp, as fitted forms have."""
     alpha = jnp.clip(alpha, 0.15, 1.0)
     b = 1.0 - alpha
     g = jnp.cos(thetaF)
@@ -83,7 +85,7 @@ float Example(float alpha, float thetaF)
 """
 
 
-def test_printed_code_reads_as_it_was_written():
+def test_printed_code_has_the_names_and_structure_of_the_function():
     def call(alpha, thetaF):
         beta = 1.0 - alpha
         num = 0.1 - beta * (0.25 + 0.30887988209724426 * beta**2 * beta)
@@ -129,7 +131,7 @@ EXPRESSIONS = {
 
 
 @pytest.mark.parametrize("expected", EXPRESSIONS)
-def test_parentheses_are_those_that_are_needed(expected):
+def test_only_needed_parentheses_are_printed(expected):
     assert one_line(EXPRESSIONS[expected], "a b c") == expected
 
 
@@ -179,7 +181,7 @@ SIGNATURES = {
 
 
 @pytest.mark.parametrize("key", LANGUAGES)
-def test_signatures_are_those_of_the_listings(key):
+def test_signatures_in_every_language(key):
     precision = "float" if "float" in LANGUAGES[key].types else "double"
     lines = write_source([COEFFICIENTS, QUADRATIC], key, precision).splitlines()
     for signature in SIGNATURES[key]:
@@ -188,7 +190,7 @@ def test_signatures_are_those_of_the_listings(key):
 
 @pytest.mark.parametrize(("key", "precision"), ALL)
 @pytest.mark.parametrize("constants", ["inline", "table"])
-def test_every_language_writes_a_form_readably(key, precision, constants):
+def test_printed_functions_are_readable_in_every_language(key, precision, constants):
     function = QUADRATIC if precision == "double" and key in NO_FUNCTIONS else TWO
     header = {"Made": "word " * 60}
     source = write_source(function, key, precision, constants=constants, header=header)
@@ -198,7 +200,7 @@ def test_every_language_writes_a_form_readably(key, precision, constants):
     if function is TWO:
         assert len(re.findall(r"\bsin[f(]", source)) == 1
         assert len(re.findall(r"\bcos[f(]", source)) == 1
-        # The square of b is made once, under its own name, and used by that name.
+        # The square of b is computed once and has a name.
         assert len(re.findall(r"\bb \* b\b", source)) == 1
         assert len(re.findall(r"\bb2 = b \* b\b", source)) == 1
         assert ("coefficients[3]" in source) == (constants == "table")
@@ -219,11 +221,11 @@ DEEP = {
 
 @pytest.mark.parametrize("key", ["c", "wgsl", "python"])
 @pytest.mark.parametrize("name", DEEP)
-def test_deep_expressions_stay_on_the_page(key, name):
+def test_deeply_nested_expressions_have_short_lines(key, name):
     source = write_source(of_scalars(DEEP[name]), key)
     assert max(map(len, source.splitlines())) <= 100
     if name == "Horner":
-        # Lines are filled: 60 short terms do not take a line each.
+        # 60 short terms share lines.
         assert len(source.splitlines()) < 30
 
 
@@ -234,7 +236,7 @@ def test_a_table_holds_each_fitted_constant_once():
     assert len(numbers) == int(table[0]) == len(set(numbers))
     assert set(numbers) == set(NUMERATOR) | set(DENOMINATOR)
     used = [int(i) for i in re.findall(r"coefficients\[(\d+)\]", source)][1:]
-    # In the order in which they are read.
+    # Constants are numbered in the order in which they are used.
     assert list(dict.fromkeys(used)) == list(range(len(numbers)))
 
 
@@ -250,7 +252,7 @@ def test_literals_read_back_as_the_same_number(precision, value):
         return
     text = shortest_decimal(value, precision)
     assert re.fullmatch(r"-?\d+\.\d+(e[-+]?\d+)?", text)
-    # A reader may round the decimal once, or to a double first.
+    # A compiler may round the decimal directly, or to a double first.
     assert dtype(float(text)) == rounded
     if precision == "float":
         assert np.float32(_strtof(text.encode(), None)) == rounded
@@ -287,7 +289,7 @@ def test_no_shorter_literal_reads_back(value):
         ("javascript", "double", "0.1"),
     ],
 )
-def test_literals_say_their_precision(key, precision, literal):
+def test_literals_have_the_suffix_of_their_precision(key, precision, literal):
     assert one_literal(key, precision) == literal
 
 
@@ -314,7 +316,7 @@ REFUSED_NAMES = {
 @pytest.mark.parametrize(
     ("key", "name"), [(k, n) for k, names in REFUSED_NAMES.items() for n in names]
 )
-def test_a_name_that_means_something_else_is_refused(key, name):
+def test_reserved_names_are_refused(key, name):
     precision = next(iter(LANGUAGES[key].types))
     spelled = re.escape(f"name {name!r} cannot be used in {LANGUAGES[key].name}; allowed: ")
     with pytest.raises(ValueError, match=spelled):
@@ -325,7 +327,7 @@ def test_a_name_that_means_something_else_is_refused(key, name):
         write_source(replace(COEFFICIENTS, result_name=name), key, precision)
 
 
-def test_what_the_author_calls_a_value_never_breaks_the_code():
+def test_the_author_s_variable_names_become_valid_identifiers():
     def call(x):
         double = x * 1.5 + 0.25
         λ = double * double + x  # noqa: PLC2401
@@ -339,7 +341,7 @@ def test_what_the_author_calls_a_value_never_breaks_the_code():
     assert names == ["double_2", "lambda", "results", "hidden", "Example_2"]
 
 
-def test_values_are_named_after_what_they_are():
+def test_unnamed_values_are_named_after_their_operands():
     def call(alpha, b):
         def twice(value):
             return value * (value + 3.0)
@@ -362,7 +364,7 @@ def test_values_are_named_after_what_they_are():
     }
 
 
-def test_a_clamped_argument_keeps_its_name():
+def test_a_clamped_argument_gets_a_name_of_its_own():
     def call(alpha):
         alpha = jnp.clip(alpha, 0.15, 1.0)
         return alpha * alpha
@@ -404,7 +406,7 @@ def test_unknown_constants_are_refused():
         (jnp.sqrt, "hlsl", "double", "'sqrt' cannot be written in HLSL at double"),
     ],
 )
-def test_what_a_language_lacks_is_refused_by_name(call, key, precision, message):
+def test_an_operation_that_a_language_lacks_is_named_in_the_error(call, key, precision, message):
     with pytest.raises(ValueError, match=message + r".*allowed: .*\badd\b.*\bmax\b"):
         write_source(of_scalars(call), key, precision)
 
@@ -425,7 +427,7 @@ def test_a_program_too_long_for_its_language_is_refused():
     assert "FuzzPs" in write_source(QUADRATIC, replace(small, max_operations=13))
 
 
-def test_functions_share_a_file_but_not_a_name():
+def test_several_functions_are_printed_with_one_prologue_and_distinct_names():
     source = write_source([COEFFICIENTS, QUADRATIC], "c", header={"Made": "by hand"})
     assert source.startswith("// Made: by hand\n\n#include <math.h>\n\n// Parameters of the fit.\n")
     assert source.count("#include") == 1
@@ -437,7 +439,7 @@ def test_functions_share_a_file_but_not_a_name():
 
 
 @pytest.mark.parametrize("key", LANGUAGES)
-def test_no_header_leaves_its_comment(key):
+def test_no_text_of_a_header_escapes_the_comment(key):
     precision = next(iter(LANGUAGES[key].types))
     text = (
         "first line\nsecond line */ \\ \u2028 \x1b\x9b\b\u202eθf ∈ [0, π/2] ½ "
@@ -454,13 +456,13 @@ def test_no_header_leaves_its_comment(key):
     )
 
 
-def test_units_and_domains_stand_above_the_function():
+def test_units_and_domains_are_printed_above_the_function():
     assert "// alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad.\n" in write_source(
         COEFFICIENTS, "c"
     )
 
 
-def test_python_takes_arrays_that_broadcast():
+def test_printed_python_accepts_arrays_that_broadcast():
     names = {}
     exec(write_source([COEFFICIENTS, QUADRATIC], "python"), names)
     alpha = np.linspace(0.2, 0.9, 5)[:, None]
@@ -471,7 +473,7 @@ def test_python_takes_arrays_that_broadcast():
     assert names["FuzzPs"](coefficients, 0.5, theta).shape == (5, 4)
 
 
-def test_python_keeps_the_precision_where_no_array_says_it():
+def test_printed_python_keeps_the_precision_of_constants():
     function = of_scalars(lambda x: (jnp.where(x > 0.5, 0.1, 0.2) * 3.0, jnp.asarray(0.1)), "x", 2)
     names = {}
     exec(write_source(function, "python", "half"), names)

@@ -1,4 +1,4 @@
-"""What toolchains say of code that fails, of tools that are missing, and of wrong questions."""
+"""Errors of toolchains: code that fails, tools that are missing, invalid inputs."""
 
 import subprocess
 import sys
@@ -42,25 +42,25 @@ ZERO = np.zeros((1, 1))
 
 @pytest.fixture(autouse=True)
 def clean_folder(tmp_path, monkeypatch):
-    """Whatever a toolchain puts into the temporary folder must be gone at the end."""
+    """Fail a test after which the temporary folder is not empty."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     yield
     assert list(tmp_path.iterdir()) == []
 
 
-def ready(target, precision):
-    reason = toolchain(target).missing(precision)
+def ready(language, precision):
+    reason = toolchain(language).missing(precision)
     if reason is not None:
-        pytest.skip(f"{target} in {precision}: {reason}")
-    return toolchain(target)
+        pytest.skip(f"{language} in {precision}: {reason}")
+    return toolchain(language)
 
 
-@pytest.mark.parametrize("target", CODE)
-def test_code_that_does_not_compile_says_why(target):
-    precision = "double" if target == "javascript" else "float"
-    chain = ready(target, precision)
-    wrong = CODE[target].replace("x * x", "x * undeclared")
+@pytest.mark.parametrize("language", CODE)
+def test_a_compile_error_has_the_compiler_s_message(language):
+    precision = "double" if language == "javascript" else "float"
+    chain = ready(language, precision)
+    wrong = CODE[language].replace("x * x", "x * undeclared")
     with pytest.raises(ToolchainError) as caught:
         chain.run(wrong, RATIO, ZERO, precision)
     assert "undeclared" in caught.value.log
@@ -70,7 +70,7 @@ def test_code_that_does_not_compile_says_why(target):
 
 
 @pytest.mark.parametrize(
-    ("target", "before", "after", "complaint"),
+    ("language", "before", "after", "complaint"),
     [
         ("c", "0.5f", "0.5", "double-promotion"),
         ("cpp", "0.5f", "0.5", "double-promotion"),
@@ -82,11 +82,11 @@ def test_code_that_does_not_compile_says_why(target):
         ("glsl", "float x)", "float y)", "undeclared"),
     ],
 )
-def test_what_the_language_does_not_allow_is_refused(target, before, after, complaint):
-    text = CODE[target]
+def test_code_that_the_language_forbids_is_refused(language, before, after, complaint):
+    text = CODE[language]
     assert before in text
     with pytest.raises(ToolchainError, match=complaint):
-        ready(target, "float").run(text.replace(before, after, 1), RATIO, ZERO, "float")
+        ready(language, "float").run(text.replace(before, after, 1), RATIO, ZERO, "float")
 
 
 def test_metal_references_need_an_address_space():
@@ -103,13 +103,13 @@ def test_osl_division_by_zero_is_zero():
     np.testing.assert_array_equal(values[:, 0], [0.0, 0.0, 0.5])
 
 
-def test_a_function_of_another_name_is_refused():
+def test_code_without_the_function_is_refused():
     text = CODE["python"].replace("Ratio", "Other")
     with pytest.raises(ToolchainError, match="no function Ratio"):
         toolchain("python").run(text, RATIO, ZERO, "float")
 
 
-def test_what_is_missing_is_a_reason_and_never_a_value(monkeypatch):
+def test_a_missing_tool_is_a_reason_and_an_error(monkeypatch):
     monkeypatch.setenv("PATH", "")
     for module in TOOLCHAINS:
         name = f"programs.toolchains.{module}.packaged_file"
@@ -118,29 +118,29 @@ def test_what_is_missing_is_a_reason_and_never_a_value(monkeypatch):
     monkeypatch.setattr(device, "packaged_file", lambda package, file: None)
     monkeypatch.setattr(device, "_workers", [])
     monkeypatch.setattr(osl, "renderer", lambda: None)
-    reasons = {target: chain.missing("float") for target, chain in TOOLCHAINS.items()}
+    reasons = {language: chain.missing("float") for language, chain in TOOLCHAINS.items()}
     assert reasons.pop("python") is None
-    for target, reason in reasons.items():
-        assert reason, target
+    for language, reason in reasons.items():
+        assert reason, language
         assert "\n" not in reason
-        if target == "javascript":
+        if language == "javascript":
             continue
-        with pytest.raises(ToolchainError, match=f"{target} in float cannot be run here"):
-            toolchain(target).run(CODE[target], RATIO, ZERO, "float")
+        with pytest.raises(ToolchainError, match=f"{language} in float cannot be run here"):
+            toolchain(language).run(CODE[language], RATIO, ZERO, "float")
     assert "Debian: nodejs" in (toolchain("javascript").missing("double") or "")
 
 
-def test_a_machine_without_a_device_says_so(monkeypatch):
+def test_a_machine_without_a_device_is_reported(monkeypatch):
     ready("wgsl", "float")
     monkeypatch.setenv("VK_DRIVER_FILES", "/nonexistent")
     monkeypatch.setenv("VK_ICD_FILENAMES", "/nonexistent")
     monkeypatch.setattr(device, "_workers", [])
     monkeypatch.setattr(device, "_failures", [])
-    for target in ("wgsl", "glsl"):
-        assert "no Vulkan" in toolchain(target).missing("float")
+    for language in ("wgsl", "glsl"):
+        assert "no Vulkan" in toolchain(language).missing("float")
 
 
-def test_a_device_that_dies_is_replaced():
+def test_a_worker_that_dies_is_replaced():
     chain = ready("wgsl", "float")
     device._workers[-1].process.kill()
     text = CODE["wgsl"]
@@ -149,19 +149,19 @@ def test_a_device_that_dies_is_replaced():
     assert chain.run(text, RATIO, ZERO, "float") == 0.5
 
 
-def test_a_program_that_does_not_end_is_ended():
+def test_a_program_that_exceeds_the_time_limit_is_ended():
     with pytest.raises(ToolchainError, match=r"no end after 0\.2 s"):
         process.execute(["sleep", "5"], failure="sleeping", seconds=0.2)
 
 
-def test_every_tool_names_its_version_and_every_note_is_a_sentence():
+def test_every_tool_has_a_version_and_every_note_is_a_sentence():
     for chain in TOOLCHAINS.values():
         assert chain.note.endswith(".")
         if chain.missing("float") is None:
             assert any(letter.isdigit() for letter in chain.tool), chain.tool
 
 
-def test_nothing_is_loaded_before_it_is_used():
+def test_no_tool_is_imported_before_it_is_used():
     code = (
         "import sys, programs.toolchains; "
         "print(sorted({'wgpu', 'cffi', 'compushady', 'slangtorch'} & set(sys.modules)))"
@@ -181,11 +181,11 @@ def test_nothing_is_loaded_before_it_is_used():
         (ZERO, "quarter", "allowed: half, float, double"),
     ],
 )
-def test_inputs_outside_the_contract_are_named(inputs, precision, complaint):
+def test_invalid_inputs_are_refused(inputs, precision, complaint):
     with pytest.raises(ValueError, match=complaint):
         toolchain("python").run("", RATIO, inputs, precision)
 
 
-def test_an_unknown_target_is_named():
+def test_an_unknown_language_is_refused():
     with pytest.raises(ValueError, match="'fortran'; allowed: c, cpp"):
         toolchain("fortran")

@@ -1,4 +1,4 @@
-"""Three functions written by hand in every language, compiled, run and held to NumPy."""
+"""Three functions written by hand in every language are compiled, run and compared with NumPy."""
 
 import tempfile
 
@@ -28,7 +28,7 @@ FORM = Function(
     lambda c, n, t: n,
 )
 
-# The arithmetic of each, in a syntax that all languages here share; `@2@` is the literal 2.
+# The bodies, in a syntax that all languages here share; `@2@` stands for the literal 2.
 RATIO_BODY = "(@1@ + @0.5@ * x) / (@2@ + x * x)"
 FILL_BODY = (
     "alpha",
@@ -83,39 +83,39 @@ HEAD = {
 }
 
 
-def source(target, function, precision):
+def source(language, function, precision):
     """Write one of the three functions in a language and precision."""
-    kind = SPELLED[target][precision]
-    write = {"wgsl": _wgsl, "python": _python, "javascript": _javascript}.get(target, _c_like)
-    text = HEAD.get(target, "") + write(target, function, kind)
+    kind = SPELLED[language][precision]
+    write = {"wgsl": _wgsl, "python": _python, "javascript": _javascript}.get(language, _c_like)
+    text = HEAD.get(language, "") + write(language, function, kind)
     pieces = text.split("@")
     for index in range(1, len(pieces), 2):
-        pieces[index] = _literal(target, kind, float(pieces[index]))
+        pieces[index] = _literal(language, kind, float(pieces[index]))
     return "".join(pieces)
 
 
-def _literal(target, kind, value):
-    if target in ("osl", "wgsl", "javascript") or kind in ("double", "np.float64"):
+def _literal(language, kind, value):
+    if language in ("osl", "wgsl", "javascript") or kind in ("double", "np.float64"):
         return repr(value)
     if kind == "float":
         return f"{value!r}f"
     return f"({kind})({value!r}f)" if kind == "_Float16" else f"{kind}({value!r})"
 
 
-def _c_like(target, function, kind):
-    prefix = PREFIX.get(target, "")
+def _c_like(language, function, kind):
+    prefix = PREFIX.get(language, "")
     if function is SCALAR:
         return f"{prefix}{kind} Ratio({kind} x) {{ return {RATIO_BODY}; }}\n"
     if function is FORM:
-        array = IN[target].format(T=kind)
+        array = IN[language].format(T=kind)
         head = f"{prefix}{kind} Form({array}, {kind} NdotU, {kind} TdotU)"
         return f"{head} {{\n    return {FORM_BODY};\n}}\n"
     rows = "".join(f"    c[{i}] = {body};\n" for i, body in enumerate(FILL_BODY))
-    array = OUT[target].format(T=kind)
+    array = OUT[language].format(T=kind)
     return f"{prefix}void Fill({kind} alpha, {kind} thetaF, {array}) {{\n{rows}}}\n"
 
 
-def _wgsl(target, function, kind):
+def _wgsl(language, function, kind):
     if function is SCALAR:
         return f"fn Ratio(x: {kind}) -> {kind} {{ return {RATIO_BODY}; }}\n"
     array = f"array<{kind}, 6>"
@@ -126,7 +126,7 @@ def _wgsl(target, function, kind):
     return f"fn Fill(alpha: {kind}, thetaF: {kind}, c: ptr<function, {array}>) {{\n{rows}}}\n"
 
 
-def _python(target, function, kind):
+def _python(language, function, kind):
     if function is SCALAR:
         return f"def Ratio(x):\n    return {RATIO_BODY}\n"
     if function is FORM:
@@ -134,7 +134,7 @@ def _python(target, function, kind):
     return f"def Fill(alpha, thetaF):\n    return ({', '.join(FILL_BODY)})\n"
 
 
-def _javascript(target, function, kind):
+def _javascript(language, function, kind):
     if function is SCALAR:
         return f"function Ratio(x) {{ return {RATIO_BODY}; }}\n"
     if function is FORM:
@@ -160,46 +160,50 @@ def reference(function, points, kind):
     return np.stack(rows, 1).astype(np.float64)
 
 
-# On this machine's own processor every operation is rounded once, as in NumPy. A shader's compiler
-# may fuse a product and a sum, and so may Blender's, which moves the largest of these sums (six
-# terms below 1) by a few units in the last place.
+# Code for the processor rounds every operation once, as NumPy does. Compilers of shaders, and
+# Blender's, may fuse a product and a sum. That changes these sums, of at most six terms below 1,
+# by a few units in the last place.
 FUSED = 6.0
 FUSING = ("glsl", "hlsl", "slang", "wgsl", "osl")
 
 
 @pytest.fixture(autouse=True)
 def clean_folder(tmp_path, monkeypatch):
-    """Whatever a toolchain puts into the temporary folder must be gone at the end."""
+    """Fail a test after which the temporary folder is not empty."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     yield
     assert list(tmp_path.iterdir()) == []
 
 
-def ready(target, precision):
-    reason = toolchain(target).missing(precision)
+def ready(language, precision):
+    reason = toolchain(language).missing(precision)
     if reason is not None:
-        pytest.skip(f"{target} in {precision}: {reason}")
-    return toolchain(target)
+        pytest.skip(f"{language} in {precision}: {reason}")
+    return toolchain(language)
 
 
-def spread(function, precision, rows=2000):
-    """Give random points of the domain, after its corners and points near zero."""
+def sample_points(function, precision, rows=2000):
+    """Return the corners of the domain, points near zero, and random points."""
     width = sum(parameter.size or 1 for parameter in function.parameters)
     special = np.repeat([[-1.0], [-0.0], [0.0], [2.0**-12], [1.0]], width, 1)
     points = np.vstack([special, np.random.default_rng(7).uniform(-1, 1, (rows, width))])
     return points.astype(number_type(precision)).astype(np.float64)
 
 
-PRECISIONS = [(target, precision) for target, kinds in SPELLED.items() for precision in kinds]
-# The smallest range that a language has.
-LEAST = [(target, next(iter(kinds))) for target, kinds in SPELLED.items() if target != "cuda"]
-# The array in and the sum that shows every rounding in each precision, the rest in one; nvcc takes
-# seconds: one function a precision.
+PRECISIONS = [(language, precision) for language, kinds in SPELLED.items() for precision in kinds]
+# Every language in its first precision, which has the smallest range
+LEAST = [(language, next(iter(kinds))) for language, kinds in SPELLED.items() if language != "cuda"]
+# FORM takes an array and shows every rounding, so it is tested in each precision, the other two in
+# one. nvcc is slow, so it gets one function for each precision.
 CASES = [
-    *((target, precision, FORM) for target, precision in PRECISIONS if target != "cuda"),
-    *((target, "float", SCALAR) for target in SPELLED if target not in ("cuda", "javascript")),
-    *((target, "float", FILL) for target in SPELLED if target not in ("cuda", "javascript")),
+    *((language, precision, FORM) for language, precision in PRECISIONS if language != "cuda"),
+    *(
+        (language, "float", SCALAR)
+        for language in SPELLED
+        if language not in ("cuda", "javascript")
+    ),
+    *((language, "float", FILL) for language in SPELLED if language not in ("cuda", "javascript")),
     ("cuda", "half", FORM),
     ("cuda", "float", FILL),
     ("cuda", "double", SCALAR),
@@ -208,35 +212,35 @@ CASES = [
 
 
 @pytest.mark.parametrize(
-    ("target", "precision", "function"),
+    ("language", "precision", "function"),
     [pytest.param(*case, id="-".join((*case[:2], case[2].name))) for case in CASES],
 )
-def test_values_are_those_of_numpy(target, precision, function):
-    points = spread(function, precision)
-    values = ready(target, precision).run(
-        source(target, function, precision), function, points, precision
+def test_values_equal_those_of_numpy(language, precision, function):
+    points = sample_points(function, precision)
+    values = ready(language, precision).run(
+        source(language, function, precision), function, points, precision
     )
     expected = reference(function, points, number_type(precision))
     assert values.dtype == np.float64
-    exact = target not in FUSING or (target == "osl" and osl.renderer() is None)
+    exact = language not in FUSING or (language == "osl" and osl.renderer() is None)
     allowed = 0.0 if exact else FUSED * np.finfo(number_type(precision)).eps
     np.testing.assert_allclose(values, expected, rtol=0, atol=allowed)
     if function is FORM and precision != "double":
-        # A value that was computed in more and rounded once is within half a unit of the exact
-        # one; where each step is rounded, some are not.
+        # If the code computed in a higher precision and rounded once, all errors would be within
+        # half a unit in the last place. If each step is rounded, some are larger.
         exact = reference(function, points, np.float64)
         unit = np.spacing(np.abs(exact).astype(number_type(precision))).astype(np.float64)
         assert (np.abs(values - exact) / unit).max() > 0.75
 
 
-@pytest.mark.parametrize(("target", "precision"), LEAST)
-def test_the_ends_of_the_range_survive(target, precision):
+@pytest.mark.parametrize(("language", "precision"), LEAST)
+def test_the_largest_and_smallest_numbers_are_passed_unchanged(language, precision):
     largest = float(np.sqrt(np.finfo(number_type(precision)).max)) / 2
     smallest = float(np.finfo(number_type(precision)).tiny)
     points = np.array([[-largest], [-1.0], [-smallest], [0.0], [smallest], [largest]])
     points = points.astype(number_type(precision)).astype(np.float64)
-    values = ready(target, precision).run(
-        source(target, SCALAR, precision), SCALAR, points, precision
+    values = ready(language, precision).run(
+        source(language, SCALAR, precision), SCALAR, points, precision
     )
     expected = reference(SCALAR, points, number_type(precision))
     assert np.isfinite(expected).all()
@@ -244,29 +248,33 @@ def test_the_ends_of_the_range_survive(target, precision):
     np.testing.assert_allclose(values, expected, rtol=relative, atol=smallest)
 
 
-@pytest.mark.parametrize("target", ["c", "wgsl"])
-def test_many_rows_come_back_in_order(target):
-    # More than one dispatch of the device holds, and no multiple of its groups.
+@pytest.mark.parametrize("language", ["c", "wgsl"])
+def test_many_rows_come_back_in_order(language):
+    # More rows than one dispatch of the device has, and not a multiple of the group size
     points = np.linspace(-1, 1, (1 << 18) + 77)[:, None]
-    values = ready(target, "float").run(source(target, SCALAR, "float"), SCALAR, points, "float")
+    values = ready(language, "float").run(
+        source(language, SCALAR, "float"), SCALAR, points, "float"
+    )
     expected = reference(SCALAR, points, np.float32)
     np.testing.assert_allclose(values, expected, rtol=FUSED * np.finfo(np.float32).eps)
 
 
 @pytest.mark.parametrize("function", [SCALAR, FILL, FORM], ids=lambda function: function.name)
 @pytest.mark.parametrize(
-    ("target", "finder"), [("cuda", "_compiler"), ("hlsl", "_library")], ids=["cuda", "hlsl"]
+    ("language", "finder"), [("cuda", "_compiler"), ("hlsl", "_library")], ids=["cuda", "hlsl"]
 )
-def test_without_its_own_compiler_another_reads_it(target, finder, function, monkeypatch):
-    module = {"cuda": cuda, "hlsl": hlsl}[target]
+def test_a_substitute_compiler_is_used_without_the_proper_one(
+    language, finder, function, monkeypatch
+):
+    module = {"cuda": cuda, "hlsl": hlsl}[language]
     monkeypatch.setattr(module, finder, lambda: None)
-    points = spread(function, "float")
-    values = ready(target, "float").run(
-        source(target, function, "float"), function, points, "float"
+    points = sample_points(function, "float")
+    values = ready(language, "float").run(
+        source(language, function, "float"), function, points, "float"
     )
     expected = reference(function, points, np.float32)
-    allowed = 0.0 if target == "cuda" else FUSED * np.finfo(np.float32).eps
+    allowed = 0.0 if language == "cuda" else FUSED * np.finfo(np.float32).eps
     np.testing.assert_allclose(values, expected, rtol=0, atol=allowed)
-    assert {"cuda": "shim", "hlsl": "lslang"}[target] in toolchain(target).tool
-    # Neither stand-in has 16-bit types.
-    assert toolchain(target).missing("half") is not None
+    assert {"cuda": "shim", "hlsl": "lslang"}[language] in toolchain(language).tool
+    # Neither of the substitutes has 16-bit types.
+    assert toolchain(language).missing("half") is not None

@@ -1,0 +1,53 @@
+"""The registry of languages: keys, default precisions, and imports that stay cheap."""
+
+import subprocess
+import sys
+
+import pytest
+
+import programs
+from programs.languages import LANGUAGES, PRECISIONS, language, precision_of
+from programs.toolchains import TOOLCHAINS
+
+
+def test_every_language_has_a_toolchain_and_known_precisions():
+    assert list(LANGUAGES) == list(TOOLCHAINS)
+    for key, spelled in LANGUAGES.items():
+        assert spelled.key == TOOLCHAINS[key].language == key
+        assert set(spelled.types) <= set(PRECISIONS)
+        assert (
+            spelled.types.keys()
+            == spelled.literals.keys()
+            == spelled.functions.keys()
+            == spelled.prologue.keys()
+        )
+    assert len({spelled.name for spelled in LANGUAGES.values()}) == len(LANGUAGES)
+
+
+def test_a_language_is_found_by_its_key():
+    assert language("hlsl").name == "HLSL"
+    with pytest.raises(ValueError, match="target 'klingon' is unknown; allowed: c, cpp, hlsl, "):
+        language("klingon")
+
+
+def test_the_default_precision_is_float_where_there_is_one():
+    assert precision_of("c", None) == "float"
+    assert precision_of("javascript", None) == "double"
+    assert precision_of("c", "half") == "half"
+    with pytest.raises(ValueError, match="precision 'double' is not in WGSL; allowed: half, float"):
+        precision_of("wgsl", "double")
+    with pytest.raises(ValueError, match="target 'klingon' is unknown"):
+        precision_of("klingon", None)
+
+
+def test_languages_are_imported_without_jax():
+    code = "import sys; from programs import LANGUAGES; print('jax' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_public_names_are_imported_when_they_are_used():
+    for name, module in programs._MODULES.items():
+        assert getattr(programs, name) is getattr(sys.modules[module], name)
+    with pytest.raises(AttributeError, match="'programs' has no attribute 'nonsense'"):
+        _ = programs.nonsense
