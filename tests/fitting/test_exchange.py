@@ -1,33 +1,47 @@
-import dataclasses
-import sys
+"""Fits to scattered points: the least largest error, sides, bounds, and rounded coefficients."""
+
+import functools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from fitting import Goal, form_values, improve
-from fitting.errors import check_reference, off_grid_reference
-from fitting.families.ps import cubic_ps, one_root_ps
-from fitting.families.q import pole_q
-from fitting.families.r import monomial_r
-from fitting.grow import grown_r
-from fitting.paper import QuadraticQ, RationalPs
+from fitting import Goal, form_values
+from fitting.fit import Fit, fit
+from fitting.points.sample import sample_of
+from fitting.points.scattered import checking_points, judging_points
+from fitting.proofs.range_proof import certify_range
+from fitting.solvers.exchange import Exchange
+from fitting.solvers.minimax import Minimax
+from quantities import problem
+from quantities.fuzz.supplement import QUADRATIC_Q
+from tests.fitting.toys import QUOTIENT, TOY, toy_form
 
-Q_FORM = pole_q(structure="one", terms=1, poles=1)
-R_FORM = monomial_r(
-    variable="1-alpha^2",
-    numerator=((0, 0), (0, 1), (1, 0), (1, 1)),
-    denominator=((1, 0),),
-    least_alpha=0.15,
+Q_FORM = problem("q").form("pole-q", {"structure": "one", "terms": 1, "poles": 1})
+R_FORM = problem("r").form(
+    "monomial-r",
+    {
+        "variable": "1-alpha^2",
+        "numerator": [[0, 0], [0, 1], [1, 0], [1, 1]],
+        "denominator": [[1, 0]],
+        "least_alpha": 0.15,
+    },
 )
+ONE_ROOT = problem("ps").form("one-root-ps", {"skew": 0, "degree": 1, "least_alpha": 0.15})
 
 
-def difference(fit) -> np.ndarray:
-    points, exact = off_grid_reference(type(fit.form))
-    return form_values(fit.form, points) - exact
+@functools.cache
+def made(form, goal: Goal) -> Fit:
+    return fit(form, goal)
+
+
+def difference(fitted) -> np.ndarray:
+    points, exact = judging_points(fitted.form)
+    return form_values(fitted, points) - exact
 
 
 def test_the_largest_error_is_lower_and_the_rms_higher_than_by_least_squares():
-    squares, largest = improve(Q_FORM, Goal()), improve(Q_FORM, Goal("linf"))
+    squares, largest = made(Q_FORM, Goal()), made(Q_FORM, Goal("linf"))
     assert largest.off_grid.largest < 0.95 * squares.off_grid.largest
     assert squares.off_grid.rms < largest.off_grid.rms
     assert largest.range is not None
@@ -35,95 +49,137 @@ def test_the_largest_error_is_lower_and_the_rms_higher_than_by_least_squares():
     assert largest.off_grid.largest == pytest.approx(largest.on_grid.largest, rel=1e-3)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("rounding", "dtype"), [("float32", np.float32), ("float16", np.float16)])
-def test_rounded_coefficients_are_representable_and_better_than_if_simply_rounded(rounding, dtype):
-    exact = improve(R_FORM, Goal("linf"))
-    fit = improve(R_FORM, Goal("linf", rounding=rounding))
-    c = np.asarray(fit.form.coefficients)
+@pytest.mark.parametrize(
+    ("rounding", "dtype"),
+    [("float16", np.float16), pytest.param("float32", np.float32, marks=pytest.mark.slow)],
+)
+def test_rounded_coefficients_are_better_than_if_simply_rounded(rounding, dtype):
+    exact = made(R_FORM, Goal("linf")).fitted
+    fitted = made(R_FORM, Goal("linf", rounding=rounding)).fitted
+    c = fitted.constants
     np.testing.assert_array_equal(c, c.astype(dtype).astype(float))
-    simply = R_FORM(np.asarray(exact.form.coefficients).astype(dtype).astype(float))
-    simply = dataclasses.replace(exact, form=simply)
-    assert np.abs(difference(fit)).max() <= 1.0001 * np.abs(difference(simply)).max()
+    simply = R_FORM.fitted(exact.constants.astype(dtype).astype(float))
+    assert np.abs(difference(fitted)).max() <= 1.0001 * np.abs(difference(simply)).max()
     if rounding == "float16":
-        assert np.abs(difference(fit)).max() < 0.99 * np.abs(difference(simply)).max()
+        assert np.abs(difference(fitted)).max() < 0.99 * np.abs(difference(simply)).max()
 
 
-def test_a_fit_from_below_creates_no_energy():
-    fit, both = (improve(Q_FORM, Goal("linf", side=side)) for side in ("below", "both"))
+def test_rounded_least_squares_refit_what_is_left():
+    fitted = fit(QUOTIENT, Goal(rounding="float16")).fitted
+    c = fitted.constants
+    np.testing.assert_array_equal(c, c.astype(np.float16).astype(float))
+    simply = QUOTIENT.fitted(fit(QUOTIENT).fitted.constants.astype(np.float16).astype(float))
+    rms = [np.sqrt(np.mean(difference(each) ** 2)) for each in (fitted, simply)]
+    assert rms[0] < 1.05 * rms[1]
+
+
+def test_a_fit_from_below_has_no_value_above_the_exact_one():
+    below, both = (made(Q_FORM, Goal("linf", side=side)) for side in ("below", "both"))
     # The linear programs are solved to 1e-7.
-    assert difference(fit).max() < 3e-6
-    assert difference(both).max() > 3e-4
-    assert both.off_grid.largest < fit.off_grid.largest < 10 * both.off_grid.largest
+    assert difference(below.fitted).max() < 3e-6
+    assert difference(both.fitted).max() > 3e-4
+    assert both.off_grid.largest < below.off_grid.largest < 10 * both.off_grid.largest
 
 
-@pytest.mark.slow
 def test_relative_errors_are_smaller_when_they_are_asked_for():
-    points, exact = off_grid_reference(QuadraticQ)
-    start = np.array([-1.7, 1.3])
-    plain, relative = (
-        improve(QuadraticQ, Goal("linf", relative=relative), start=start)
-        for relative in (False, True)
-    )
-    sizes = [np.abs(difference(fit) / exact).max() for fit in (plain, relative)]
+    points, exact = judging_points(QUADRATIC_Q)
+    plain, relative = (made(QUADRATIC_Q, Goal("linf", relative=each)) for each in (False, True))
+    sizes = [np.abs(difference(each.fitted) / exact).max() for each in (plain, relative)]
     assert sizes[1] < 0.95 * sizes[0]
     assert relative.off_grid.largest > plain.off_grid.largest
     assert len(points) == relative.off_grid.points
+    # The bound is one of the error itself.
+    assert relative.least_error is None and plain.least_error is not None
 
 
 def test_a_quotient_of_linear_functions_has_a_bound_that_is_nearly_attained():
-    fit = improve(R_FORM, Goal("linf"))
-    assert fit.lower_bound is not None
-    assert 0.98 * fit.on_grid.largest < fit.lower_bound <= fit.on_grid.largest
-
-
-def test_a_form_without_coefficients_is_measured_and_certified():
-    fit = improve(cubic_ps(steps=0, degree=-1, least_alpha=0.15), Goal("linf", rounding="float32"))
-    assert fit.certificate.holds
-    assert 0.01 < fit.off_grid.largest < 0.0125
-    assert np.size(fit.form.coefficients) == 0
-
-
-def test_least_squares_has_no_side_and_no_bounds():
-    with pytest.raises(ValueError, match="side = 'below'"):
-        Goal("l2", side="below")
-    with pytest.raises(ValueError, match="bounded = True with norm = 'l2'"):
-        Goal(bounded=True)
-
-
-def test_a_bounded_fit_that_is_not_proven_to_be_is_refused(monkeypatch):
-    # The module, which the function of the same name hides.
-    monkeypatch.setattr(sys.modules["fitting.improve"], "certify_range", lambda _: None)
-    with pytest.raises(ValueError, match="not shown to be between 0 and 1"):
-        improve(Q_FORM, Goal("linf", bounded=True))
-
-
-def test_what_no_proof_is_known_for_is_refused_at_once():
-    with pytest.raises(ValueError, match="no proof is known that would bound rational-ps"):
-        improve(RationalPs, Goal("linf", bounded=True), start=np.zeros(162))
+    found = made(R_FORM, Goal("linf"))
+    assert found.least_error is not None
+    assert 0.98 * found.on_grid.largest < found.least_error <= found.on_grid.largest
 
 
 @pytest.mark.slow
-def test_a_bounded_fit_is_a_fraction_where_the_best_one_is_not():
-    form = one_root_ps(skew=0, degree=1, least_alpha=0.15)
-    free, bounded = (improve(form, Goal("linf", bounded=each)) for each in (False, True))
-    points, _ = check_reference(form, 77)
-    assert form_values(free.form, points).max() > 1.01
+def test_a_measure_lowers_the_weighted_error():
+    points, exact = judging_points(ONE_ROOT)
+    density = np.sin(points[:, 2]) * np.cos(points[:, 2])
+
+    def rms(measure):
+        error = form_values(fit(ONE_ROOT, measure=measure).fitted, points) - exact
+        return np.sqrt(np.average(error**2, weights=density))
+
+    assert rms("cosine") < 0.99 * rms("uniform")
+
+
+@pytest.mark.slow
+def test_a_bounded_fit_is_in_the_unit_interval_where_the_best_one_is_not():
+    free, bounded = (fit(ONE_ROOT, Goal("linf", bounded=each)) for each in (False, True))
+    points, _ = checking_points(ONE_ROOT, 77)
+    assert form_values(free.fitted, points).max() > 1.01
     assert free.range is None
-    assert form_values(bounded.form, points).max() <= 1
+    assert form_values(bounded.fitted, points).max() <= 1
     assert bounded.range is not None
     assert (bounded.range.lower, bounded.range.upper) == (0, 1)
+    assert certify_range(bounded.fitted) is not None
     assert free.on_grid.largest < bounded.on_grid.largest < 1.5 * free.on_grid.largest
 
 
-@pytest.mark.slow
-def test_the_sets_of_monomials_grow_by_one_and_improve():
-    forms = []
-    for form in grown_r(0.15):
-        forms.append(form)
-        if len(forms) == 6:
-            break
-    sizes = [len(form.coefficient_names()) for form in forms]
-    assert sizes == list(range(sizes[0], sizes[0] + 6))
-    first, last = (improve(form, Goal()).off_grid.rms for form in (forms[0], forms[-1]))
-    assert last < 0.1 * first
+# The steps of the solver
+
+
+def test_the_worst_points_of_elsewhere_are_added_to_the_sample():
+    """With few fitted points the error elsewhere is larger at first, and less after the exchange."""
+    form = replace(QUOTIENT, reference=replace(TOY, sampling=replace(TOY.sampling, fitted=3)))
+    goal = Goal("linf")
+    once, settled = (
+        Exchange(exchanges=count).fit(form, goal, "uniform", None, lambda _: None)
+        for count in (1, 8)
+    )
+    assert len(settled[1].points) > len(once[1].points) >= len(sample_of(form).points)
+    points, exact = checking_points(QUOTIENT, 5)
+    largest = [
+        np.abs(form_values(QUOTIENT.fitted(found), points) - exact).max()
+        for found, _ in (once, settled)
+    ]
+    assert largest[1] < largest[0]
+
+
+def test_the_solver_is_tuned_by_its_fields():
+    one = Exchange(minimax=Minimax(programs=1), exchanges=1)
+    rough, fine = fit(QUOTIENT, Goal("linf"), exchange=one), fit(QUOTIENT, Goal("linf"))
+    assert fine.on_grid.largest < rough.on_grid.largest
+
+
+def test_a_form_that_is_no_quotient_needs_a_start():
+    form = toy_form(lambda c, x, y: c[0] * c[1] * x + y, ["a", "b"])
+    with pytest.raises(ValueError, match="toy-form has no starts: give one"):
+        fit(form)
+
+
+def test_a_linear_start_with_a_pole_is_refused():
+    # The exact values change their sign in the domain, and so does the best denominator.
+    form = toy_form(lambda c, x, y: 1 / (1 + c[0] * (y - 0.5) + c[1] * x), ["y", "x"])
+    exact = replace(
+        TOY, closed_form=lambda x, y: type(TOY.closed_form(x, y))(1 / (0.02 + y - x), 1e-15 + 0 * x)
+    )
+    with pytest.raises(ValueError, match="its linear problem has a pole; try other monomials"):
+        fit(replace(form, reference=exact))
+
+
+def test_starts_that_end_with_poles_are_refused():
+    form = toy_form(
+        lambda c, x, y: 1 / (c[0] + 0.0 * x), ["a"], starts=(np.array([np.nan]),), name="poles"
+    )
+    with pytest.raises(ValueError, match="poles: no start gives a form without poles"):
+        fit(form)
+
+
+def test_each_step_is_told():
+    stages = []
+    fit(QUOTIENT, Goal("linf", rounding="float32"), progress=stages.append)
+    assert stages == [
+        "exact f where quotient is fitted",
+        "quotient: least squares",
+        "quotient: least largest error",
+        "quotient: rounding to float32",
+        "quotient: errors and certificate",
+    ]

@@ -190,7 +190,7 @@ def compute(tree, c, x, y):
     return operations[kind]()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(above=LINEAR, below=LINEAR, free=FREE, around=st.sampled_from(["alone", "sum", "product"]))
 def test_every_quotient_of_linear_functions_is_found(above, below, free, around):
     """(N + …)/(D + …), with a function of the axes added or multiplied, has the form's values."""
@@ -216,7 +216,7 @@ def test_every_quotient_of_linear_functions_is_found(above, below, free, around)
         assert (error <= 1e-13 * (np.abs(expected) + size * cancelled) * cancelled + 1e-300).all()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(tree=LINEAR)
 def test_every_linear_function_is_found_to_be_linear(tree):
     form = toy_form(lambda c, x, y: jnp.asarray(compute(tree, c, x, y) + 0.0 * x), ["a", "b", "c"])
