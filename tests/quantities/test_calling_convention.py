@@ -1,72 +1,44 @@
-"""What is exported of each table: the paper's functions, in every language, with honest headers."""
+"""How quantities are called in a shader: the supplement's functions, arguments and clamps."""
 
-import functools
-import os
-import re
 from dataclasses import replace
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from coefficients import verify
-from coefficients.catalogue import form_of, load
-from coefficients.shaders import EXACT_PS, exact_ps, functions_of, shader
-from coefficients.signatures import signature
-from fitting import form_values
-from programs.function import Parameter, function
-from programs.languages import TARGETS
-from programs.printing.printer import write
-from programs.program import evaluate
-from programs.toolchains.registry import toolchain
-from programs.toolchains.toolchain import Toolchain
-from programs.tracing.tracer import trace
-from shadefit import export
+from coefficients.catalogue import resolve
+from fitting.points.grids import sobol_points
+from programs import evaluate, toolchain, trace, write_source
+from quantities import problem
+from quantities.calling_convention import renamed
 
-TABLES = [
-    "ps",
-    "g",
-    "q",
-    "r",
-    "velvet",
-    "published/ps",
-    "published/g",
-    "published/q",
-    "published/r",
-]
 EPS = float(np.finfo(np.float32).eps)
-PAPER_NAMES = {
+NAMES_IN_PRINT = {
     "ps": ["CalcFuzzPsCoeffs", "FuzzPs"],
     "g": ["FuzzGApprox"],
     "q": ["FuzzAveragePenetration"],
     "r": ["FuzzAveragePs"],
     "velvet": ["FuzzVelvetNorm"],
 }
+PUBLISHED = ("published/ps", "published/g", "published/q", "published/r")
 # The longest sum of a listing: each of its terms is rounded in its powers, its product and the
 # partial sums after it. Two orders of the same sum are each within this of the exact one.
 LISTING_ROUNDINGS = 2 * 16
 
 
-@pytest.mark.parametrize("name", TABLES)
-def test_the_code_that_is_exported_is_the_form_that_was_fitted(name):
-    problem = verify.Problem(shader(name, "double"), "double", exponent=12)
-    expected = form_values(form_of(load(name)), problem.points)
-    # Both are float64; the forms' quotients lose up to three digits.
-    np.testing.assert_allclose(problem.form, expected, rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("name", TABLES)
-def test_functions_have_the_papers_names(name):
-    assert [each.name for each in functions_of(load(name))] == PAPER_NAMES[
-        name.removeprefix("published/")
-    ]
+@pytest.mark.parametrize("name", [*NAMES_IN_PRINT, *PUBLISHED, "best/ps-40"])
+def test_functions_have_the_names_in_print(name):
+    entry = resolve(name)
+    expected = NAMES_IN_PRINT[entry.problem.name]
+    assert [each.name for each in entry.functions()] == expected
 
 
 def in_c(function, rows):
     """Run a function's float32 C."""
     if toolchain("c").missing("float") is not None:
         pytest.skip("gcc is not here")
-    return toolchain("c").run(write(function, "c"), function, rows, "float").astype(np.float32)
+    return toolchain("c").run(write_source(function, "c"), function, rows, "float").astype(
+        np.float32
+    )
 
 
 def listing_terms(alpha, theta_f):
@@ -93,7 +65,7 @@ def listing_quotient(p, q, b, x, y):
 
 
 def materials(count=4096):
-    """Give α and θf in float32, inside, at the ends and beyond the domain."""
+    """Return α and θf in float32, inside, at the ends and beyond the domain."""
     rng = np.random.default_rng(5)
     alpha = np.concatenate([rng.uniform(-0.2, 1.2, count), [0.15, 1.0, 0.15, 1.0]])
     theta = np.concatenate([rng.uniform(-0.2, 1.8, count), [0.1, 0.1, 1.6, 1.6]])
@@ -107,12 +79,16 @@ def listing_clamp(alpha, theta_f, least_theta):
     return np.maximum(np.float32(0.15), np.minimum(np.float32(1), alpha)), theta_f
 
 
+def constants_of(name: str) -> np.ndarray:
+    return np.array(resolve(name).require_table().coefficients, np.float32)
+
+
 @pytest.mark.parametrize("name", ["published/ps", "published/ps@printed"])
 def test_calc_fuzz_ps_coeffs_is_the_listing_with_rows_3_and_4_exchanged(name):
-    constants = np.array(load("published/ps@printed").coefficients, np.float32)
+    constants = constants_of("published/ps@printed")
     alpha, theta_f = materials()
     b, x = listing_terms(*listing_clamp(alpha, theta_f, 0.1))
-    calc, value = functions_of(load(name))
+    calc, value = resolve(name).functions()
     given = in_c(calc, np.stack([alpha, theta_f], 1))
     corrected = name == "published/ps"
     rows = [0, 1, 2, 4, 3, 5] if corrected else range(6)
@@ -134,21 +110,21 @@ def test_g_q_and_r_are_the_listings():
     nu = rng.uniform(0.001, 1, 4096).astype(np.float32)
     d = np.minimum(density, np.float32(0.5))
 
-    c = np.array(load("published/g").coefficients, np.float32)
-    (approximation,) = functions_of(load("published/g"))
+    c = constants_of("published/g")
+    (approximation,) = resolve("published/g").functions()
     den = d + nu * (c[2] + nu * nu * c[3])
     expected = (d * (1 + nu * (c[0] + nu * c[1]))) / den
     # The same operations in the same order: only the compiler may differ.
     np.testing.assert_allclose(
         in_c(approximation, np.stack([nu, density], 1))[:, 0], expected, rtol=2 * EPS
     )
-    c = np.array(load("published/q").coefficients, np.float32)
-    (average,) = functions_of(load("published/q"))
+    c = constants_of("published/q")
+    (average,) = resolve("published/q").functions()
     np.testing.assert_allclose(
         in_c(average, density[:, None])[:, 0], 1 + d * (c[0] + d * c[1]), rtol=2 * EPS
     )
-    c = np.array(load("published/r").coefficients, np.float32)
-    (average,) = functions_of(load("published/r"))
+    c = constants_of("published/r")
+    (average,) = resolve("published/r").functions()
     alpha, theta_f = materials()
     b, x = listing_terms(*listing_clamp(alpha, theta_f, 0.0))
     expected, bound = listing_quotient(c[:14], c[14:], b, x, x[:3])
@@ -165,10 +141,11 @@ def test_g_q_and_r_are_the_listings():
               [[0.15, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, np.pi / 2]]),
         ("g", [[0.3, 7.0]], [[0.3, 0.5]]),
         ("q", [[7.0]], [[0.5]]),
+        ("velvet", [[-1.0], [0.5]], [[-0.95], [0.0]]),
     ],
 )  # fmt: skip
 def test_arguments_are_clamped_as_the_listings_clamp_them(name, outside, inside):
-    program = trace(functions_of(load(name))[0])
+    program = trace(resolve(name).functions()[0])
     np.testing.assert_array_equal(
         evaluate(program, np.array(outside)), evaluate(program, np.array(inside))
     )
@@ -179,12 +156,11 @@ def test_arguments_are_clamped_as_the_listings_clamp_them(name, outside, inside)
     [("ps", [1, 1]), ("best/ps-11", [1, 1]), ("g", [0, 1]), ("q", 1), ("r", [1, 1]), ("velvet", 1)],
 )
 def test_a_form_on_another_domain_is_clamped_to_its_own(name, clamped):
-    form = form_of(load(name))
-
-    class Narrow(type(form)):
-        axes = tuple(replace(a, upper=(a.lower + a.upper) / 2) for a in type(form).axes)
-
-    wide, narrow = (signature(each)[0] for each in (form, Narrow(form.coefficients)))
+    entry = resolve(name)
+    form, calling = entry.require_fitted().form, entry.problem.calling
+    axes = tuple(replace(axis, upper=(axis.lower + axis.upper) / 2) for axis in form.axes)
+    halved = replace(form, axes=axes).fitted(entry.require_fitted().coefficients)
+    wide, narrow = (calling.functions(each)[0] for each in (entry.require_fitted(), halved))
     corner = np.array([[parameter.domain[1] for parameter in narrow.parameters]])
     assert (corner < [parameter.domain[1] for parameter in wide.parameters]).all()
     np.testing.assert_array_equal(
@@ -192,126 +168,73 @@ def test_a_form_on_another_domain_is_clamped_to_its_own(name, clamped):
     )
 
 
-def test_density_is_not_clamped_from_below():
-    for name in ("g", "q"):
-        program = trace(functions_of(load(name))[0])
-        width = len(program.inputs)
-        low = evaluate(program, np.full((1, width), -0.1))
-        assert low[0, 0] != evaluate(program, np.array([[-0.1] * (width - 1) + [0.0]]))[0, 0]
+@pytest.mark.parametrize("name", ["g", "q"])
+def test_density_is_not_clamped_from_below(name):
+    program = trace(resolve(name).functions()[0])
+    width = len(program.inputs)
+    low = evaluate(program, np.full((1, width), -0.1))
+    assert low[0, 0] != evaluate(program, np.array([[-0.1] * (width - 1) + [0.0]]))[0, 0]
 
 
-def test_a_name_of_ones_own():
-    calc, value = functions_of(load("ps"), "Fibre")
-    assert (calc.name, value.name) == ("CalcFibreCoeffs", "Fibre")
-    assert "FuzzPs" not in calc.summary
-    assert exact_ps(name="Fibre")[0].name == "Fibre"
-    assert shader("q", function_name="Fibre").functions[0].name == "Fibre"
-    with pytest.raises(ValueError, match="function name '2x' is no identifier"):
-        functions_of(load("q"), "2x")
+def test_arguments_come_in_the_order_of_the_function_not_of_the_form():
+    entry = resolve("g")
+    points = sobol_points(entry.axes, 4, seed=1)
+    (columns,) = entry.problem.calling.arguments_at(entry.require_fitted(), points)
+    assert [parameter.name for parameter in entry.functions()[0].parameters] == ["NdotV", "density"]
+    np.testing.assert_array_equal(columns, points[:, ::-1])
 
 
-@pytest.mark.parametrize("language", TARGETS)
-def test_any_function_of_a_user_exports(language):
-    def lobe(cosine, alpha):
-        return jnp.exp(-alpha * cosine) / (1.0 + cosine)
-
-    parameters = (Parameter("NdotU", (0.0, 1.0)), Parameter("alpha", (0.0, 4.0)))
-    mine = function("Lobe", parameters, lobe)
-    precision = verify.precision_of(language, None)
-    source = write(mine, language, precision)
-    assert "Lobe(" in source
-    chain = toolchain(language)
-    if chain.missing(precision) is None and language != "cuda":
-        rows = np.random.default_rng(8).uniform(0, 1, (100, 2))
-        expected = np.exp(-rows[:, 1] * rows[:, 0]) / (1 + rows[:, 0])
-        given = chain.run(source, mine, rows, precision)[:, 0]
-        # The device's exp is good to several units in the last place, Blender's to 1e-5.
-        np.testing.assert_allclose(given, expected, rtol=2e-5)
+def test_the_second_function_of_p_s_takes_the_results_of_the_first_and_cosines():
+    entry = resolve("ps")
+    calc, value = entry.functions()
+    assert (calc.result, calc.result_name) == (6, "c")
+    assert [parameter.name for parameter in calc.parameters] == ["alpha", "thetaF"]
+    assert [(p.name, p.size) for p in value.parameters] == [
+        ("c", 6), ("NdotU", None), ("TdotU", None),
+    ]  # fmt: skip
+    points = sobol_points(entry.axes, 5, seed=2)
+    material, light = entry.arguments_at(points)
+    np.testing.assert_array_equal(material, points[:, :2])
+    np.testing.assert_allclose(light[:, 0], np.cos(points[:, 2]), rtol=1e-15)
+    # The domain of the results holds what the first function returns.
+    results = evaluate(trace(calc), material)
+    assert np.abs(results).max() <= 1.01 * value.parameters[0].domain[1]
 
 
-@pytest.fixture
-def few_points(monkeypatch):
-    monkeypatch.setattr(export, "Problem", functools.partial(verify.Problem, exponent=8))
+def test_clamped_arguments_keep_their_name_in_exported_code():
+    """A clamp is no assignment of the form's author: the convention names its result."""
+    for name, local in (("ps", "theta_f"), ("r", "theta_f"), ("g", "density"), ("q", "density")):
+        hints = {step.hint for step in trace(resolve(name).functions()[0]).steps}
+        assert local in hints
 
 
-EVERY = [(key, kind) for key, spelled in TARGETS.items() for kind in spelled.types]
-
-
-@pytest.mark.parametrize(("language", "precision"), EVERY)
-def test_every_language_and_precision_has_an_honest_header(few_points, language, precision):
-    # Q takes no function that a language may lack; nvcc takes seconds a run.
-    source = export.code("q", language, precision)
-    comment = TARGETS[language].comment
-    head = source.partition("\n\n")[0].splitlines()
-    assert all(line.startswith(comment) for line in head)
-    assert max(map(len, head)) <= 100
-    text = " ".join(line.removeprefix(comment).strip() for line in head)
-    for label in ("Quantity", "Equation", "Domain", "Error in exact arithmetic", "Cost"):
-        assert f"{label}: " in text
-    assert f"Made by: shadefit export q --to {language} --precision {precision}" in text
-    measured = re.search(rf"Error in {precision}: rms (\S+), largest (\S+) against", text)
-    # As `shadefit compare` has it, within the few points that are used here.
-    assert float(measured[1]) == pytest.approx(4.7e-3, rel=0.2)
-    assert float(measured[2]) == pytest.approx(1.0e-2, rel=0.1)
-    ran = toolchain(language).missing(precision) is None
-    assert ("this code run in" in text) == ran
-    assert ("emulated" in text) != ran
-    assert ("Half precision: good enough" in text) == (precision == "half")
-    assert source == source.encode("ascii").decode()
+def test_a_convention_without_clamps_adds_no_steps():
+    entry = resolve("q")
+    calling = entry.problem.calling
+    bare = replace(calling, arguments=(replace(calling.arguments[0], clamp="none"),))
+    (clamped,), (free,) = (each.functions(entry.require_fitted()) for each in (calling, bare))
+    assert len(trace(clamped).steps) == len(trace(free).steps) + 1
 
 
 @pytest.mark.parametrize(
-    ("name", "domain"),
-    [
-        ("q", "density in [0, 0.5]"),
-        (
-            EXACT_PS,
-            "NdotU in [0, 1], TdotU in [-1, 1], NdotT in [0, 1], alpha in [0.05, 1]",
-        ),
-        (
-            "published/ps",
-            "alpha in [0.15, 1], thetaF in [0.1, 1.5708] rad, NdotU in [0, 1], TdotU in [-1, 1]",
-        ),
-    ],
+    ("quantity", "said"), [("g", "G (Eq. 3)"), ("q", "Q (Eq. 4)"), ("r", "R (Eq. 5)")]
 )
-def test_the_headers_domain_is_in_the_functions_arguments(name, domain):
-    assert export._domain(shader(name).functions) == domain
+def test_the_summary_says_which_equation(quantity, said):
+    (function,) = resolve(quantity).functions()
+    assert said in function.summary
 
 
-def test_without_a_compiler_the_error_is_emulated(few_points, monkeypatch):
-    monkeypatch.setattr(Toolchain, "missing", lambda self, precision: "not here")
-    assert "emulated, every operation rounded: HLSL was not run" in " ".join(
-        export.code("q", "hlsl").replace("//", "").split()
-    )
+def test_the_summary_of_a_familys_form_says_its_family():
+    (function,) = resolve("best/g-9").functions()
+    assert "G (tied-g)" in function.summary
 
 
-def test_with_a_compiler_that_fails_the_error_is_emulated(few_points, monkeypatch, tmp_path):
-    compiler = tmp_path / "gcc"
-    compiler.write_text("#!/bin/sh\nexit 1\n")
-    compiler.chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    assert (
-        "emulated, every operation rounded: "
-        "C code of FuzzAveragePenetration in float does not compile (status 1))"
-    ) in " ".join(export.code("q", "c").replace("//", "").split())
-
-
-@pytest.mark.parametrize("name", ["g", EXACT_PS])
-@pytest.mark.parametrize("constants", ["inline", "table"])
-def test_the_same_command_gives_the_same_bytes(few_points, name, constants):
-    first, second = (export.code(name, "python", "float", "Fn", constants) for _ in range(2))
-    assert first == second
-    assert ("coefficients = (" in first) == (constants == "table" and name == "g")
-
-
-def test_the_header_says_when_half_is_not_good_enough(few_points):
-    assert "NOT GOOD ENOUGH" in export.code("published/ps", "python", "half")
-    assert "NOT GOOD ENOUGH" not in export.code("q", "python", "half")
-    assert "precision: " not in export.code("published/ps", "python", "float")
-
-
-@pytest.mark.parametrize(("precision", "most"), [("float", 2e-7), ("double", 4e-15)])
-def test_the_closed_forms_header_says_what_its_steps_leave(few_points, precision, most):
-    text = " ".join(export.code(EXACT_PS, "python", precision).replace("#", "").split())
-    left = re.search(r"none but what the root's steps leave: rms (\S+), largest (\S+) ", text)
-    assert 0 < float(left[1]) < float(left[2]) < most
+def test_functions_may_have_another_name():
+    calc, value = resolve("ps").functions(name="Fibre")
+    assert (calc.name, value.name) == ("CalcFibreCoeffs", "Fibre")
+    assert "FuzzPs" not in calc.summary
+    assert "Fibre" in calc.summary
+    assert resolve("exact/ps").functions(name="Fibre")[0].name == "Fibre"
+    assert renamed(problem("q").calling.functions(resolve("q").require_fitted()), "F")[0].name == "F"
+    with pytest.raises(ValueError, match="function name '2x' is no identifier"):
+        resolve("q").functions(name="2x")
