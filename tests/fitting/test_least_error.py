@@ -15,9 +15,7 @@ from tests.fitting.toys import toy_form
 
 NODES = np.linspace(0, 0.5, 501)[:, None]
 EXACT = np.exp(-2 * NODES[:, 0])
-Q_PROBLEM = residuals(
-    QUADRATIC_Q, NODES, EXACT, np.ones(501), np.array([True, True]), np.zeros(2)
-)
+Q_PROBLEM = residuals(QUADRATIC_Q, NODES, EXACT, np.ones(501), np.array([True, True]), np.zeros(2))
 
 
 def test_the_bound_of_a_linear_form_is_nearly_attained():
@@ -49,9 +47,11 @@ def test_where_no_bound_is_sought_there_is_none():
     errors = Q_PROBLEM.values(np.array([-1.7, 1.2]))
     silent = replace(QUADRATIC_Q, has_least_error=False)
     assert least_error(silent, NODES, EXACT, errors) is None
-    assert not problem("q").form(
-        "pole-q", {"structure": "one", "terms": 2, "poles": 0}
-    ).has_least_error
+    assert (
+        not problem("q")
+        .form("pole-q", {"structure": "one", "terms": 2, "poles": 0})
+        .has_least_error
+    )
     points = np.array([[0.1, 0.2], [0.3, 0.4]])
     for form in (
         toy_form(lambda c, x, y: x + y, []),

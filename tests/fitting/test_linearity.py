@@ -89,9 +89,7 @@ def test_the_parts_give_the_values_of_the_form(name):
         np.testing.assert_allclose(quotient_at(parts, c), values_at(form, c, points), rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    "variable", ["1-alpha", "1-alpha^2", "(1-alpha)/(1+alpha)"]
-)
+@pytest.mark.parametrize("variable", ["1-alpha", "1-alpha^2", "(1-alpha)/(1+alpha)"])
 def test_forms_of_r_are_quotients_in_every_variable(variable):
     form = problem("r").form("monomial-r", {**MONOMIAL_R.shape, "variable": variable})
     c, points = np.array([0.3, -0.2, 0.1, 0.4, 0.2]), np.array([[0.2, 0.1], [0.6, 1.2], [1, 0.4]])
@@ -256,7 +254,9 @@ def test_the_denominator_must_stay_positive(form, expected):
 
 
 def test_of_several_divisors_the_least_must_stay_positive():
-    form = toy_form(lambda c, x, y: 1 / (2 + c[0] * x) + y / (3 - c[1] * y) + x / (1 + x), ["a", "b"])
+    form = toy_form(
+        lambda c, x, y: 1 / (2 + c[0] * x) + y / (3 - c[1] * y) + x / (1 + x), ["a", "b"]
+    )
     for c in ([1.0, 1.0], [-3.0, 0.5], [0.0, 2.0]):
         expected = min(2 + c[0] * 0.5, 3 - c[1] * 1.5)
         assert float(derived_positive(form)(np.array(c), 0.5, 1.5)) == pytest.approx(expected)

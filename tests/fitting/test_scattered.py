@@ -79,9 +79,7 @@ def test_points_are_those_of_the_domain_that_is_judged():
 
 def test_exact_values_belong_to_the_points_that_check():
     points, exact = checking_points(RATIONAL_G, 77)
-    np.testing.assert_allclose(
-        exact[::997], RATIONAL_G.reference.values(points[::997]), rtol=1e-14
-    )
+    np.testing.assert_allclose(exact[::997], RATIONAL_G.reference.values(points[::997]), rtol=1e-14)
     other, _ = checking_points(RATIONAL_G, 78)
     assert points.shape == other.shape
     assert not np.array_equal(points, other)

@@ -42,7 +42,9 @@ def toy_form(call: Callable, names: list, **options) -> Form:
     )
 
 
-PLANE = toy_form(lambda c, x, y: jnp.asarray(c[0] + c[1] * x + c[2] * y), ["1", "x", "y"], name="plane")
+PLANE = toy_form(
+    lambda c, x, y: jnp.asarray(c[0] + c[1] * x + c[2] * y), ["1", "x", "y"], name="plane"
+)
 QUOTIENT = toy_form(
     lambda c, x, y: jnp.asarray((c[0] + c[1] * x + c[2] * y) / (1 + c[3] * x + c[4] * y * y)),
     ["1", "x", "y", "below: x", "below: y²"],

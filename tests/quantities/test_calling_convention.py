@@ -36,8 +36,8 @@ def in_c(function, rows):
     """Run a function's float32 C."""
     if toolchain("c").missing("float") is not None:
         pytest.skip("gcc is not here")
-    return toolchain("c").run(write_source(function, "c"), function, rows, "float").astype(
-        np.float32
+    return (
+        toolchain("c").run(write_source(function, "c"), function, rows, "float").astype(np.float32)
     )
 
 
@@ -235,6 +235,8 @@ def test_functions_may_have_another_name():
     assert "FuzzPs" not in calc.summary
     assert "Fibre" in calc.summary
     assert resolve("exact/ps").functions(name="Fibre")[0].name == "Fibre"
-    assert renamed(problem("q").calling.functions(resolve("q").require_fitted()), "F")[0].name == "F"
+    assert (
+        renamed(problem("q").calling.functions(resolve("q").require_fitted()), "F")[0].name == "F"
+    )
     with pytest.raises(ValueError, match="function name '2x' is no identifier"):
         resolve("q").functions(name="2x")

@@ -65,9 +65,7 @@ def test_the_quantities_of_the_fuzz_brdf_are_known_in_their_order():
 def test_an_unknown_quantity_is_refused_in_one_line(name):
     with pytest.raises(ValueError) as caught:
         problem(name)
-    assert one_line(caught) == (
-        f"no quantity is called {name!r}: allowed are ps, g, q, r, velvet"
-    )
+    assert one_line(caught) == (f"no quantity is called {name!r}: allowed are ps, g, q, r, velvet")
 
 
 def test_a_quantity_comes_in_by_its_name_and_goes_again(registered):
@@ -155,7 +153,9 @@ def test_exact_code_is_of_the_closed_form(name):
     from programs import evaluate, trace  # noqa: PLC0415
 
     owner = problem(name)
-    lower, upper = (np.array([getattr(a, e) for a in owner.exact_code.axes]) for e in ("lower", "upper"))
+    lower, upper = (
+        np.array([getattr(a, e) for a in owner.exact_code.axes]) for e in ("lower", "upper")
+    )
     points = lower + (upper - lower) * np.random.default_rng(1).random((50, len(lower)))
     (function,) = owner.exact_code.functions("double")
     (columns,) = owner.exact_code.arguments_at(points)
