@@ -127,7 +127,7 @@ def test_further_forms_are_found_beside_the_default_one():
     own = replace(twice(), forms=(steep,))
     assert own.form("steep", None) is steep
     assert list(own.single_forms) == ["line", "steep"]
-    with pytest.raises(ValueError, match="allowed are line, steep$"):
+    with pytest.raises(ValueError, match=r"allowed are line, steep$"):
         own.form("curve", None)
 
 
