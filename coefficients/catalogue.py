@@ -30,7 +30,8 @@ Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
 
 
-@dataclass(frozen=True)
+# Compared and hashed by identity: a table cannot be hashed, and programs are kept by entry.
+@dataclass(frozen=True, eq=False)
 class Entry:
     """What a name stands for: its quantity, and the table with its fitted form.
 
