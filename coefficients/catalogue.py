@@ -30,7 +30,7 @@ Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Entry:
     """What a name stands for: its quantity, and the table with its fitted form.
 
@@ -194,7 +194,7 @@ def path_of(name: str) -> Path:
 def corrected(table: Table) -> Table:
     """Apply the errata that a published table records; others are returned as they are.
 
-    Applied errata are marked, so that they are not applied again when the table is written and read.
+    Applied errata are marked, so that they are not applied again when the table is read.
     """
     if table.publication is None:
         return table

@@ -1,6 +1,6 @@
-"""What a form's traced program tells of it: what is linear in the coefficients, what must be positive.
+"""What a form's traced program tells: what is linear in the coefficients, what must be positive.
 
-A form that is a quotient (a₀ + a·c)/(b₀ + b·c) of functions that are linear in its coefficients c is
+Whether a form is a quotient (a₀ + a·c)/(b₀ + b·c), linear in its coefficients c above and below, is
 found by evaluating its program over such quotients instead of numbers.
 """
 
@@ -152,7 +152,7 @@ def _division(one: Any, other: Any) -> _Quotient:
 
 
 def _lifted(name: str) -> Callable[..., Any]:
-    """Apply an operation to plain numbers as NumPy does, to quotients by the rule, if there is one."""
+    """Return an operation on numbers, by NumPy, and on quotients, by a rule if there is one."""
     rules = {
         "add": _sum(1.0),
         "sub": _sum(-1.0),

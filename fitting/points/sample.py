@@ -36,7 +36,7 @@ class Sample:
 
 
 def sample_of(form: Form, goal: Goal = LEAST_SQUARES, measure: str = "uniform") -> Sample:
-    """Return the sample that a form is fitted on; `measure` names one of the quantity's measures."""
+    """Return the sample that a form is fitted on; `measure` names a measure of the quantity."""
     reference = form.reference
     points = scattered_points(reference, form.axes, reference.sampling.fitted, SEED)
     return _sample(points, _estimates(reference, form.axes), form, goal, measure)

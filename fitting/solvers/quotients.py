@@ -1,9 +1,9 @@
 """Least squares fits of quotients whose features are known (fitting/shapes/quotients.py).
 
-A fit starts from the best polynomial, its denominator one; no fit starts from published constants.
-A penalty on small denominators keeps Levenberg–Marquardt from stepping across a pole. Every start
-without a pole in the domain that was tried ends in the same minimum (tests/fitting/test_quotients.py);
-starts with one do not.
+A fit starts from the best polynomial, whose denominator is one; no fit starts from published
+constants. A penalty on small denominators keeps Levenberg–Marquardt from stepping across a pole.
+All starts without a pole in the domain that were tried end in the same minimum; starts with a pole
+do not (tests/fitting/test_quotients.py).
 """
 
 from collections.abc import Callable

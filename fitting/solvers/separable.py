@@ -58,7 +58,7 @@ class Separable:
     description: str = "QR per cell; Levenberg–Marquardt (optimistix) of all coefficients together"
 
     def fit(self, form: Form, count: int, measure: str, progress: Progress) -> GridFit:
-        """Fit on `count` nodes an axis; `measure` names the weights of the second stage's points."""
+        """Fit on `count` nodes an axis; `measure` names the weights of the inner points."""
         reference = form.reference
         grid = trapezoid_grid(form.axes[: form.shared], count)
         progress(f"exact {reference.symbol} and the best combination in every cell")

@@ -1,7 +1,7 @@
 """Operations that a language does not have, written by ones that it has.
 
 `expm1` and `log1p` are missing in most shading languages. Near zero, where exp(x) − 1 and
-log(1 + x) would lose all digits, their series are evaluated instead. The series are good to float32.
+log(1 + x) would lose all digits, series are evaluated instead. They are accurate to float32.
 """
 
 from collections.abc import Callable, Collection

@@ -96,7 +96,7 @@ def tied_g(*, poles: int, root: int) -> Form:
     """Return the form of G that is d/ν + … for small d and one at ν = 0, both exactly.
 
     (1 − e^(−d (1/ν + w)/(1 + c√d))) / (1 + νw): the rate and the factor share w(ν), a constant and
-    `poles` (0 or 1); `root` = 1 slows the rate by 1/(1 + c√d). The coefficients are those of w, and c.
+    `poles` (0 or 1); `root` = 1 slows the rate by 1/(1 + c√d). The coefficients are w's, then c.
     """
 
     def value(c, density: Scalar, cos_v: Scalar) -> Array:

@@ -1,4 +1,4 @@
-"""What the forms of P_s share: a material's numbers first, then the value for a direction of light."""
+"""What the forms of P_s share: first a material's numbers, then the value for a light."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

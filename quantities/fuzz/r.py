@@ -31,7 +31,8 @@ R = Problem(
             Argument("alpha", "alpha", clamp="both", local="alpha"),
             Argument("theta_f", "thetaF", clamp="both", local="theta_f"),
         ),
-        remark="alpha, the roughness, is the projected area along the fibre, thetaF its polar angle",
+        remark="alpha, the roughness, is the projected area along the fibre, thetaF its polar "
+        "angle",
     ),
     plot=PlotHints(
         {

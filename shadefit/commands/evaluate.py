@@ -110,8 +110,8 @@ def run(
 def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:
     """Read the options of a quantity's axes, such as ['--alpha', '0.35', '--phi=90deg'].
 
-    Returns the values by the axes' names, in order. Raises ValueError for an option that is missing,
-    that is none of the quantity's, or whose value is outside the axis's domain.
+    Returns the values by the axes' names, in order. Raises ValueError for an option that is missing
+    or not the quantity's, and for a value outside the domain of its axis.
     """
     flags = {flag_of(name): axis for axis in owner.axes for name in (axis.name, axis.alias) if name}
     wanted = ", ".join(flag_of(axis.name) for axis in owner.axes)
