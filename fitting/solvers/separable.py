@@ -104,7 +104,7 @@ class Separable:
         root = np.sqrt(grid.weights)
         shape = fits.optimum.shape
 
-        outer = root.reshape(*shape[:2], 1)
+        outer = jnp.asarray(root.reshape(*shape[:2], 1))
 
         @jax.jit
         def fit(points: Array, penalised: Array, factors: Array, optimum: Array) -> Array:
