@@ -95,9 +95,7 @@ PS = Problem(
                 factor=180 / np.pi,
                 unit="°",
             ),
-            "theta_u": AxisHint(
-                "$θ_u$", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi, unit="°"
-            ),
+            "theta_u": AxisHint("$θ_u$", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi, unit="°"),
             "phi": AxisHint("φ", -np.pi, np.pi, np.pi / 2, factor=180 / np.pi, unit="°"),
         },
         values=(0.0, 1.0),
