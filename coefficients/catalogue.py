@@ -19,6 +19,7 @@ from integrals.reference import Axis
 from programs.functions import Function
 from quantities import Problem, problem, problems
 from quantities.calling_convention import renamed
+from quantities.problem import ExactCode
 
 FOLDER = Path(__file__).parent / "tables"
 # A published table with this behind its name is taken as printed, its errata left in.
@@ -47,18 +48,19 @@ class Entry:
         """The axes, restricted to the domain that the entry is made for."""
         if self.fitted is not None:
             return self.fitted.axes
-        return self._exact_code().axes
+        return self.exact_code.axes
 
     @property
     def equation(self) -> str:
         """What the value is computed by."""
-        return self.require_table().equation if self.table else self._exact_code().equation
+        return self.require_table().equation if self.table else self.exact_code.equation
 
     @property
     def remark(self) -> str | None:
         """What the caller of the exported functions must know of their arguments."""
-        exact = self._exact_code().remark if self.fitted is None else None
-        return self.problem.calling.remark if self.fitted is not None else exact
+        if self.fitted is not None:
+            return self.problem.calling.remark
+        return self.exact_code.remark
 
     def require_table(self) -> Table:
         """Return the table; raises ValueError for a closed form, which has none."""
@@ -81,7 +83,7 @@ class Entry:
         function. Raises ValueError for a name that is no identifier.
         """
         if self.fitted is None:
-            functions = self._exact_code().functions(precision)
+            functions = self.exact_code.functions(precision)
         else:
             functions = self.problem.calling.functions(self.fitted)
         return functions if name is None else renamed(functions, name)
@@ -89,13 +91,14 @@ class Entry:
     def arguments_at(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return what each function is called with at points (n, axes), without earlier results."""
         if self.fitted is None:
-            return self._exact_code().arguments_at(points)
+            return self.exact_code.arguments_at(points)
         return self.problem.calling.arguments_at(self.fitted, points)
 
-    def _exact_code(self):
-        code = self.problem.exact_code
-        assert code is not None
-        return code
+    @property
+    def exact_code(self) -> ExactCode:
+        """The closed form of the quantity as shader code; only for a quantity that has one."""
+        assert self.problem.exact_code is not None
+        return self.problem.exact_code
 
 
 def resolve(name: str) -> Entry:
@@ -208,7 +211,7 @@ def _files() -> dict[str, Path]:
     """Map the names of the tables that are kept here to their files: refitted, best, published."""
     found: dict[str, Path] = {}
     for folder, prefix in (("refit", ""), ("best", "best/"), ("published", "published/")):
-        paths = sorted(FOLDER.glob(f"*/{folder}/*.json"), key=lambda path: path.stem)
+        paths = sorted(FOLDER.glob(f"*/{folder}/*.json"), key=lambda path: path.name)
         found |= {f"{prefix}{path.stem}": path for path in paths}
     return found
 

@@ -134,9 +134,7 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
         # The same points and steps, without the roundings of the precision.
         double = replace(trial, precision="double", calls=_calls(entry, "double"))
         left = trial.against_integral(double.form)
-        head["Error in exact arithmetic"] = (
-            f"none but what the root's steps leave: {text_of(left)} (in float64)"
-        )
+        head["Error in exact arithmetic"] = f"{entry.exact_code.left}: {text_of(left)} (in float64)"
     else:
         known = proofs(entry)
         if known:

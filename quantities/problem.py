@@ -21,7 +21,8 @@ class ExactCode:
 
     `functions` maps a precision ("half", "float", "double") to the functions, in the order of their
     calls; `arguments_at` maps points (n, axes) to what they are called with. `axes` are the domain
-    whose errors are stated, `equation` and `remark` are written into the header.
+    whose errors are stated, `equation` and `remark` are written into the header, and so is `left`:
+    what error the code has in exact arithmetic.
     """
 
     equation: str
@@ -29,6 +30,7 @@ class ExactCode:
     functions: Callable[[str], tuple[Function, ...]]
     arguments_at: Callable[[np.ndarray], tuple[np.ndarray, ...]]
     remark: str | None = None
+    left: str = "none but the rounding of float64"
 
 
 @dataclass(frozen=True)

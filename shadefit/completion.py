@@ -22,7 +22,7 @@ def complete_table(incomplete: str) -> list[str]:
     found = [
         f"{prefix}{path.stem}"
         for prefix, folder in (("", "refit"), ("published/", "published"), ("best/", "best"))
-        for path in sorted(_TABLES.glob(f"*/{folder}/*.json"))
+        for path in sorted(_TABLES.glob(f"*/{folder}/*.json"), key=lambda path: path.name)
     ]
     return [name for name in found if name.startswith(incomplete)]
 

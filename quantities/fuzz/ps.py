@@ -81,6 +81,7 @@ PS = Problem(
         lambda points: (np.stack([*cosines_at(points), points[:, 0]], axis=1),),
         "NdotU = u·n, TdotU = u·t, NdotT = n·t, all unit vectors; t and −t are one fibre: turn t "
         "so that NdotT >= 0",
+        "none but what the root's steps leave",
     ),
     plot=PlotHints(
         {
