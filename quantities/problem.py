@@ -118,8 +118,8 @@ class PlotHints:
     """How a quantity is drawn.
 
     * `axes` has a hint for each axis, by name; an axis without one gets `AxisHint.default`.
-    * `values` is the range of the quantity that is drawn (None: that of its exact values), and
-      `value_label` and `exact_label` are its label and the legend of its exact values, with mathtext.
+    * `values` is the range of the quantity that is drawn; None stands for that of its exact values.
+      `value_label` is its label and `exact_label` the legend of its exact values, with mathtext.
     * The colours of maps end at an error of ±`largest_error`.
     * Surfaces are seen from `azimuth`, in degrees, and have `surface_nodes` points an axis. Maps of
       errors have `map_nodes` points an axis.

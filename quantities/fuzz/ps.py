@@ -106,8 +106,8 @@ PS = Problem(
         hemisphere=HemisphereHint(
             "theta_u",
             "phi",
-            "The hemisphere of lights seen from above. The fibre leans to the right; the ring is the "
-            "light.",
+            "The hemisphere of lights seen from above. The fibre leans to the right; the ring is "
+            "the light.",
         ),
     ),
     topic="fuzz",

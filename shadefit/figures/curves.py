@@ -1,4 +1,4 @@
-"""Pictures of a quantity of one axis: its values, and the signed errors of its tables, as curves."""
+"""Pictures of a quantity of one axis: curves of its values, and of the errors of its tables."""
 
 from matplotlib.figure import Figure
 

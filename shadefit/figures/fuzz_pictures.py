@@ -18,9 +18,9 @@ def fuzz_pictures() -> dict[str, Picture]:
     return {
         "ps": Picture(
             "P_s and its errors, from above",
-            "P_s over the hemisphere of lights, seen from above. The fibre leans to the right. From "
-            "left to right: the exact values, the published table (its two rows exchanged), the "
-            "refitted table, and the signed errors of both tables.",
+            "P_s over the hemisphere of lights, seen from above. The fibre leans to the right. "
+            "From left to right: the exact values, the published table (its two rows exchanged), "
+            "the refitted table, and the signed errors of both tables.",
             draw_discs,
         ),
         "figure-1": _spherical(1, 0.15),
@@ -39,34 +39,37 @@ def fuzz_pictures() -> dict[str, Picture]:
         ),
         "figure-7": Picture(
             "Figure 7 of the supplement: R and R̃",
-            "R over α and the fibre's angle: exact, by the published table, and by the refitted one.",
+            "R over α and the fibre's angle: exact, by the published table, and by the refitted "
+            "one.",
             partial(draw_surfaces, R),
         ),
         "errors-ps": Picture(
             "Errors of P_s by material",
-            "The rms and the largest error of P_s over all lights, for every material: the published "
-            "table as printed, the published table with its two rows exchanged, and the refitted "
-            "table.",
+            "The rms and the largest error of P_s over all lights, for every material: the "
+            "published table as printed, the published table with its two rows exchanged, and "
+            "the refitted table.",
             draw_ps_errors,
         ),
         "errors-g": Picture(
             "Errors of G",
-            "G and the signed errors of its tables on logarithmic axes. The errors are largest where "
-            "the layer is thin and the view is grazing. The error is zero along the grey lines.",
+            "G and the signed errors of its tables on logarithmic axes. The errors are largest "
+            "where the layer is thin and the view is grazing. The error is zero along the grey "
+            "lines.",
             partial(draw_errors, G),
         ),
         "errors-r": Picture(
             "Errors of R",
-            "R and the signed errors of its tables over materials. The error is zero along the grey "
-            "lines.",
+            "R and the signed errors of its tables over materials. The error is zero along the "
+            "grey lines.",
             partial(draw_errors, R),
         ),
         "rows-ps": Picture(
             "The two exchanged rows of P_s",
-            "The coefficients c₀ … c₅ of Eq. (1) over materials. First row: the best coefficients, "
-            "fitted to each material by itself. Below: the published table as printed, the published "
-            "table with c₃ and c₄ exchanged, and the refitted table. The frames mark the error: the "
-            "printed c₃ looks like the best c₄, and the printed c₄ like the best c₃.",
+            "The coefficients c₀ … c₅ of Eq. (1) over materials. First row: the best "
+            "coefficients, fitted to each material by itself. Below: the published table as "
+            "printed, the published table with c₃ and c₄ exchanged, and the refitted table. The "
+            "frames mark the error: the printed c₃ looks like the best c₄, and the printed c₄ "
+            "like the best c₃.",
             draw_rows,
         ),
     }
@@ -75,9 +78,9 @@ def fuzz_pictures() -> dict[str, Picture]:
 def _spherical(number: int, alpha: float) -> Picture:
     return Picture(
         f"Figure {number} of the supplement: P_s and P̃_s, α = {alpha:g}",
-        f"P_s over the hemisphere of lights for α = {alpha:g}, as a spherical plot: the distance of "
-        "the surface from the centre is P_s. The circles have the radii ½ and 1. The orange line is "
-        "the fibre. The colours are lightly shaded. The tables are evaluated as in the listings, "
-        "which clamp θf to 0.1; this changes the first column.",
+        f"P_s over the hemisphere of lights for α = {alpha:g}, as a spherical plot: the distance "
+        "of the surface from the centre is P_s. The circles have the radii ½ and 1. The orange "
+        "line is the fibre. The colours are lightly shaded. The tables are evaluated as in the "
+        "listings, which clamp θf to 0.1; this changes the first column.",
         partial(draw_spherical, alpha),
     )

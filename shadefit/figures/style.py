@@ -1,4 +1,4 @@
-"""One style for every picture, with colours that also the colour-blind and prints can tell apart."""
+"""One style for every picture, whose colours can be told apart by the colour-blind and in print."""
 
 import io
 from collections.abc import Callable
@@ -41,8 +41,8 @@ KINDS = {
     "best": "other forms",
     "exact": "closed form, in float32",
 }
-# Each kind has a colour of Okabe and Ito, a dash pattern and a marker, so that no two kinds differ by
-# colour alone.
+# Each kind has a colour of Okabe and Ito, a dash pattern and a marker, so that no two kinds differ
+# by colour alone.
 COLOURS = {
     "exact": "#000000",
     "published": "#d55e00",
