@@ -123,6 +123,14 @@ def resolve(name: str) -> Entry:
     )
 
 
+def load(name: str) -> FittedForm:
+    """Return the fitted form of a table, by its name or its file's path.
+
+    It is called with the values of its axes. Raises ValueError as `resolve` does.
+    """
+    return resolve(name).require_fitted()
+
+
 def entries(owner: Problem | None = None) -> list[Entry]:
     """Return the tables that are kept here, of one quantity or of all.
 

@@ -17,12 +17,17 @@ if TYPE_CHECKING:
 
 MAX_SAMPLES = 1 << 24
 # The options of axes depend on the quantity: they are read by `axis_values`.
-SETTINGS = {"ignore_unknown_options": True, "allow_extra_args": True}
+SETTINGS = {"ignore_unknown_options": True}
 
 
 def evaluate(
-    context: typer.Context,
     integral: Annotated[str, typer.Argument(help="ps, g, q, r or velvet.", metavar="INTEGRAL")],
+    arguments: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Each argument of the integral as an option.", metavar="--NAME VALUE ..."
+        ),
+    ] = None,
     table: Annotated[
         list[str] | None,
         typer.Option(
@@ -43,7 +48,7 @@ def evaluate(
     --density and --cos-v of g; --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
     Angles are radians unless 'deg' follows: 45deg, 0.785, 0.785rad.
     """
-    run(integral, context.args, table or [], samples, sequence, seed, json)
+    run(integral, arguments or [], table or [], samples, sequence, seed, json)
 
 
 def run(

@@ -24,12 +24,13 @@ def test_a_missing_function_is_accurate_to_float32_everywhere(call, exact, domai
     assert {"expm1", "log1p"}.isdisjoint(step.operation for step in program.steps)
     x = np.concatenate([np.linspace(*domain, 100_001), NEAR, -NEAR])
     x = x.astype(np.float32).astype(float)
+    x = x[x != 0]
     relative = np.abs(evaluate(program, x[:, None])[:, 0] / exact(x) - 1)
-    assert np.nanmax(relative[x != 0]) < 3e-8
+    assert np.max(relative) < 3e-8
     # In float32, 1 + x of log1p and e^x − 1 are rounded before they are used.
     single = evaluate(program, x[:, None], np.float32)[:, 0].astype(float)
     scale = np.maximum(np.abs(exact(x)), np.abs(x) * 1e-3)
-    assert np.max(np.abs(single - exact(x))[x != 0] / scale[x != 0]) < 6e-7
+    assert np.max(np.abs(single - exact(x)) / scale) < 6e-7
 
 
 def test_zero_stays_zero():
