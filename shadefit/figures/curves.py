@@ -27,8 +27,9 @@ def draw_curves(owner: Problem) -> Figure:
         above = below = figure.subplots()
     line = points_along(hint, _NODES, logarithmic=hint.logarithmic)
     points = line[:, None]
+    shown = line * hint.factor
     truth = exact(owner.reference, points)
-    above.plot(line, truth, color=COLOURS["exact"], label=hints.exact_label)
+    above.plot(shown, truth, color=COLOURS["exact"], label=hints.exact_label)
     if tables:
         below.axhline(0, color=COLOURS["exact"], lw=0.8)
     drawn: set[str] = set()
@@ -39,7 +40,7 @@ def draw_curves(owner: Problem) -> Figure:
         values = exported_values(entry, points)
         for axes, curve in ((above, values), (below, values - truth)):
             axes.plot(
-                line,
+                shown,
                 curve,
                 label=label,
                 color=COLOURS[kind],
@@ -55,7 +56,7 @@ def draw_curves(owner: Problem) -> Figure:
     above.legend()
     if tables:
         below.set(ylabel="table − exact")
-    below.set(xlabel=hint.shown_label, xlim=(hint.lower, hint.upper))
+    below.set(xlabel=hint.shown_label, xlim=(shown[0], shown[-1]))
     if hint.logarithmic:
         below.set(xscale="log")
     return figure

@@ -10,7 +10,7 @@ from coefficients.frontier import Mark, marks
 from coefficients.proof_text import proof_text
 from coefficients.table import Table
 from programs import count_operations
-from quantities import Problem, problems
+from quantities import Problem
 from shadefit.figures.style import KINDS
 
 _COLUMNS = (
@@ -93,10 +93,9 @@ def _proofs(table: Table | None) -> str:
 def errata() -> str:
     """Return the errata that the published tables record, as lists."""
     lines = []
-    for owner in problems().values():
-        entry = published(owner)
-        publication = entry and entry.require_table().publication
-        if not entry or not publication:
+    for entry in entries():
+        publication = entry.require_table().publication
+        if publication is None or entry.kind == "printed":
             continue
         lines.append(f"<h3>{escape(entry.name)}</h3>")
         lines.append(f'<p class="faint">{escape(publication.listing)}</p>')
