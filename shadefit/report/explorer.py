@@ -29,7 +29,7 @@ _SHOWN = ("published", "refitted")
 
 @dataclass
 class _Printed:
-    """The functions of the page by name, and how the functions of inputs are called."""
+    """The functions that the page calls, by name."""
 
     functions: dict[str, Function] = field(default_factory=dict)
 

@@ -279,8 +279,8 @@ def test_pictures_follow_the_hints(registered):
     assert axes.get_xlim() == (2.0, 200.0)
     assert axes.get_ylim() == pytest.approx((-1.0, 1.06))
     (curve,) = axes.get_lines()
-    x, y = curve.get_data()
-    np.testing.assert_allclose(y, np.cos(np.asarray(x) / 2), atol=1e-12)
+    x, y = np.array(curve.get_data(), float)
+    np.testing.assert_allclose(y, np.cos(x / 2), atol=1e-12)
 
 
 def test_tables_of_a_quantity_are_drawn_when_they_are_kept():
