@@ -12,7 +12,7 @@ from quantities.family import Family
 from quantities.fuzz.lights import cosines_at
 from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
 from quantities.fuzz.supplement import RATIONAL_PS
-from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, Problem
 
 _COSINE = (0.0, 1.0)
 # The least α whose error in float32 is stated.
@@ -85,12 +85,30 @@ PS = Problem(
     ),
     plot=PlotHints(
         {
-            "alpha": AxisHint("α", 0.05, 1.0, 0.35),
-            "theta_f": AxisHint("$θ_f$ / °", 0.0, np.pi / 2, np.pi / 4, factor=180 / np.pi),
-            "theta_u": AxisHint("$θ_u$ / °", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi),
-            "phi": AxisHint("φ / °", -np.pi, np.pi, np.pi / 2, factor=180 / np.pi),
+            "alpha": AxisHint("α", 0.15, 1.0, 0.35, explored=(0.05, 1.0)),
+            "theta_f": AxisHint(
+                "fibre's angle $θ_f$",
+                0.1,
+                np.pi / 2,
+                np.pi / 4,
+                explored=(0.0, np.pi / 2),
+                short_label="$θ_f$",
+                factor=180 / np.pi,
+                unit="°",
+            ),
+            "theta_u": AxisHint("$θ_u$", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi, unit="°"),
+            "phi": AxisHint("φ", -np.pi, np.pi, np.pi / 2, factor=180 / np.pi, unit="°"),
         },
+        values=(0.0, 1.0),
+        value_label="fraction scattered to the base, $P_s$",
         cost_label="operations a direction",
+        against="theta_u",
+        hemisphere=HemisphereHint(
+            "theta_u",
+            "phi",
+            "The hemisphere of lights seen from above. The fibre leans to the right; the ring is "
+            "the light.",
+        ),
     ),
     topic="fuzz",
 )
