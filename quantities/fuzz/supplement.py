@@ -5,7 +5,7 @@ from dataclasses import replace
 import jax.numpy as jnp
 from jax import Array
 
-from fitting.form import Form, Proofs, Stage
+from fitting.form import Form, Proofs, Stage, unguarded
 from fitting.points.grids import gauss_grid, trapezoid_grid
 from fitting.shapes.quotients import Quotients
 from fitting.solvers.on_grid import MARQUARDT, OnGrid
@@ -110,6 +110,7 @@ RATIONAL_G = Form(
     ),
     coefficient_names=["c0: dν", "c1: dν²", "c2: ν", "c3: ν³"],
     stages=(Stage(_rational_g),),
+    proofs=Proofs(positive=unguarded),
     solver=OnGrid(gauss_grid),
 )
 
