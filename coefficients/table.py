@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from coefficients.json_text import laid_out, read_object
+from fitting.goal import Norm, Rounding, Side
 
 SCHEMA = "shadefit.table/1"
 # No table is near this size: a larger file is refused before it is parsed.
@@ -74,10 +75,10 @@ class GridRecord(_Part):
 class GoalRecord(_Part):
     """What the fit made small: see fitting/goal.py."""
 
-    norm: Literal["l2", "linf"]
+    norm: Norm
     relative: bool
-    side: Literal["both", "below", "above"]
-    rounding: Literal["none", "float32", "float16"]
+    side: Side
+    rounding: Rounding
     bounded: bool = False
 
 
@@ -172,7 +173,7 @@ class Table(_Part):
     coefficients: Vector | Annotated[list[Row], Field(min_length=1, max_length=64)]
     coefficient_names: Labels | Annotated[list[LabelRow], Field(min_length=1, max_length=64)]
     grid: GridRecord | None = None
-    weight: Literal["uniform", "solid-angle", "cosine"] | None = None
+    weight: Name | None = None
     goal: GoalRecord | None = None
     reference: Reference | None = None
     errors: ErrorRecords | None = None
