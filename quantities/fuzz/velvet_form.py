@@ -5,8 +5,6 @@ B̃ = 1 + x (c₀ + c₁x + c₂(1 − s)) of B. Both the loss of r and the boun
 coefficients: the fit is a linear program.
 """
 
-from dataclasses import replace
-
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -19,6 +17,7 @@ from fitting.points.grids import Grid, trapezoid_grid
 from fitting.solvers.on_grid import OnGrid
 from integrals import VELVET
 from integrals.fuzz.velvet import normalisation, series_coefficients
+from integrals.reference import restricted
 from programs.bounding.denominators import DenominatorBound, bound_below
 from programs.functions import Function, Parameter
 from programs.tracing.tracer import trace
@@ -32,7 +31,7 @@ _LIFT_NODES = 4097
 _SERIES_LIMIT = float(np.arcsin(0.25))
 _SERIES_TERMS = 24
 
-AXES = (replace(VELVET.axes[0], lower=-0.95, open_below=False),)
+AXES = restricted(VELVET.axes, asymmetry=(-0.95, 0.0))
 
 _norms = jax.jit(jax.vmap(normalisation))
 
