@@ -29,7 +29,7 @@ Row = Annotated[list[Number], Field(min_length=1, max_length=4096)]
 Labels = Annotated[list[Text], Field(max_length=4096)]
 LabelRow = Annotated[list[Text], Field(min_length=1, max_length=4096)]
 Pair = Annotated[list[int], Field(min_length=2, max_length=2)]
-# What tells the members of a family of forms apart: checked by fitting/families.
+# What tells the members of a family of forms apart: checked by quantities/family.py.
 Shape = Annotated[
     dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]], _CLOSED
 ]
@@ -206,7 +206,7 @@ def _shape(nested: list) -> tuple[int, ...]:
 
 
 def json_schema() -> dict[str, Any]:
-    """Give the JSON Schema that every table is validated against."""
+    """Return the JSON Schema that every table is validated against."""
     return Table.model_json_schema(by_alias=True)
 
 
@@ -252,6 +252,6 @@ def read(path: Path) -> Table:
 
 
 def serialise(table: Table) -> str:
-    """Give a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
+    """Return a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
     data = table.model_dump(by_alias=True, exclude_none=True)
     return laid_out(data) + "\n"

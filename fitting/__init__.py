@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fitting.form import Form as Form
     from fitting.form import Proofs as Proofs
     from fitting.form import Stage as Stage
+    from fitting.form import plain_form as plain_form
     from fitting.goal import Goal as Goal
     from fitting.points.domain import Domain as Domain
     from fitting.points.domain import common_domain as common_domain
@@ -32,6 +33,7 @@ _MODULES = {
     "Form": "fitting.form",
     "Proofs": "fitting.form",
     "Stage": "fitting.form",
+    "plain_form": "fitting.form",
     "Goal": "fitting.goal",
     "Domain": "fitting.points.domain",
     "common_domain": "fitting.points.domain",

@@ -97,7 +97,7 @@ def _terms(x: np.ndarray) -> np.ndarray:
 
 
 def _room(fitted: FittedForm, rest, phi):
-    """Give (B̃ − B)/x at x = sin φ, `rest` giving (B − 1)/x."""
+    """Return (B̃ − B)/x at x = sin φ; `rest` is a function that returns (B − 1)/x."""
     c, x, s = fitted.constants, jnp.sin(phi), jnp.cos(phi)
     return c[0] + c[1] * x + c[2] * (1 - s) - rest(phi, x, s)
 
@@ -116,7 +116,7 @@ def _near_zero(_, x, s):
 
 
 def _beyond(phi, x, s):
-    """Give (B − 1)/x from B = (2/(πx²)) ((π + 2φ)(2x² − 1) + 2xs + πs³)."""
+    """Return (B − 1)/x from B = (2/(πx²)) ((π + 2φ)(2x² − 1) + 2xs + πs³)."""
     a = np.pi + 2 * phi
     b = (2 / np.pi) * (a * (2 * x * x - 1) + 2 * x * s + np.pi * s * s * s) / (x * x)
     return (b - 1) / x
