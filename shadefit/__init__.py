@@ -6,7 +6,8 @@ evaluated: `jax.config.update("jax_enable_x64", True)`.
 
 * Exact values: `PS`, `G`, `Q`, `R`, `VELVET` are the references of the fuzz BRDF; `Reference`,
   `Axis`, `Sampling`, `Estimate` and `leg` make others.
-* Fits: `fit` finds the coefficients of a `Form` for a `Goal` and returns a `Fit`.
+* Fits: `fit` finds the coefficients of a `Form` for a `Goal` and returns a `Fit`; `plain_form`
+  makes a form of a plain function.
 * Quantities: `problem(name)`, `problems()`, `register(problem)`; `Problem`, `CallingConvention`,
   `Argument`, `PlotHints`, `AxisHint`.
 * Tables: `load(name)` returns the fitted form of a table; `resolve(name)` all that is known of it.
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from fitting import Form as Form
     from fitting import Goal as Goal
     from fitting import Stage as Stage
+    from fitting import plain_form as plain_form
     from fitting.fit import fit as fit
     from integrals import PS as PS
     from integrals import VELVET as VELVET
@@ -58,7 +60,7 @@ _HOMES = {
     "coefficients.exported_code": ("exported_values", "source_file"),
     "coefficients.record": ("table_of",),
     "coefficients.table": ("Table",),
-    "fitting": ("Fit", "FittedForm", "Form", "Goal", "Stage"),
+    "fitting": ("Fit", "FittedForm", "Form", "Goal", "Stage", "plain_form"),
     "fitting.fit": ("fit",),
     "integrals": (
         *("PS", "G", "Q", "R", "VELVET"),

@@ -1,7 +1,6 @@
 """A sixth quantity, declared as a user would: S = tanh(x y), and two forms that stand for it."""
 
 import jax.numpy as jnp
-import numpy as np
 
 import shadefit as sf
 
@@ -24,24 +23,19 @@ SOFT = sf.Reference(
 )
 
 
-def form(name: str, names: list[str], value) -> sf.Form:
-    start = np.array([1.0, 0.4, 0.1][: len(names)])
-    return sf.Form(
-        name, f"{name} of z = x y", SOFT, AXES, names, (sf.Stage(value),), starts=(start,)
-    )
-
-
-def short(c, x, y):
+def short(x, y, a, b):
+    """S = a z/(1 + b z²), z = x y"""
     z = x * y
-    return c[0] * z / (1 + c[1] * z * z)
+    return a * z / (1 + b * z * z)
 
 
-def longer(c, x, y):
+def longer(x, y, a, b, c):
+    """S = z (a + c z²)/(1 + b z²), z = x y"""
     z = x * y
-    return z * (c[0] + c[2] * z * z) / (1 + c[1] * z * z)
+    return z * (a + c * z * z) / (1 + b * z * z)
 
 
-FORMS = (form("short", ["a", "c"], short), form("longer", ["a", "c", "b"], longer))
+FORMS = (sf.plain_form(short, SOFT), sf.plain_form(longer, SOFT, start=[1.0, 0.4, 0.1]))
 PROBLEM = sf.Problem(
     reference=SOFT,
     default=FORMS[1],

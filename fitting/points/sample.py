@@ -60,10 +60,8 @@ def scale_at(
     A relative error takes 1/|f|. A measure of the quantity multiplies squared errors by its
     density, and the largest error by its own factor.
     """
-    chosen = form.reference.sampling.measures.get(measure)
+    chosen = form.reference.sampling.measures[measure]
     scale = 1 / np.abs(exact) if goal.relative else np.ones(len(exact))
-    if chosen is None:
-        return scale
     factor = np.sqrt(chosen.density(points)) if goal.norm == "l2" else chosen.largest(points)
     return scale * factor
 

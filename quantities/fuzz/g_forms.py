@@ -7,7 +7,6 @@ alone, are rational. The power 1/(1 + x)⁴ may stand for the exponential.
 import functools
 import itertools
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import jax.numpy as jnp
 import numpy as np
@@ -15,9 +14,10 @@ from jax import Array
 
 from fitting.form import Form, Proofs, Stage, unguarded
 from integrals import G
+from integrals.reference import restricted
 from shading.types import Scalar
 
-AXES = (replace(G.axes[0], lower=0.001, upper=0.5), replace(G.axes[1], lower=0.001))
+AXES = restricted(G.axes, density=(0.001, 0.5), cos_v=(0.001, 1.0))
 
 # Names of a piece's coefficients, the piece as a function of them and of d and ν, and a start.
 Piece = tuple[tuple[str, ...], Callable, tuple[float, ...]]

@@ -1,11 +1,10 @@
 """P_s: part of the scattered light that goes down to the base."""
 
-from dataclasses import replace
-
 import numpy as np
 
 import integrals
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
+from integrals.reference import restricted
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
@@ -73,10 +72,7 @@ PS = Problem(
     closed_form=fraction_at,
     exact_code=ExactCode(
         "closed form, root by Newton's steps",
-        (
-            replace(integrals.PS.axes[0], lower=LEAST_EXACT_ALPHA, open_below=False),
-            *integrals.PS.axes[1:],
-        ),
+        restricted(integrals.PS.axes, alpha=(LEAST_EXACT_ALPHA, 1.0)),
         exact_functions,
         lambda points: (np.stack([*cosines_at(points), points[:, 0]], axis=1),),
         "NdotU = u·n, TdotU = u·t, NdotT = n·t, all unit vectors; t and −t are one fibre: turn t "

@@ -3,7 +3,6 @@
 import functools
 import itertools
 from collections.abc import Iterator
-from dataclasses import replace
 
 import jax.numpy as jnp
 from jax import Array
@@ -12,6 +11,7 @@ from fitting.form import Form, Stage
 from fitting.greedy_monomials import greedy_sets
 from fitting.shapes.monomials import Exponents, horner
 from integrals import R
+from integrals.reference import restricted
 from shading.types import Scalar
 
 # A variable's symbol, and the variable as a function of α and b = 1 − α.
@@ -56,7 +56,7 @@ def monomial_r(
             f"{len(numerator)} and 1 + {len(denominator)} monomials z^i y^j"
         ),
         reference=R,
-        axes=(replace(R.axes[0], lower=least_alpha, open_below=False), R.axes[1]),
+        axes=restricted(R.axes, alpha=(least_alpha, 1.0)),
         coefficient_names=[
             f"{part}: z^{i} y^{j}" for part, exponents in sets.items() for i, j in exponents
         ],

@@ -58,7 +58,7 @@ def ps_errors(count: int, directions: int):
     (count,), θf (count,), and by label a pair of (count, count) arrays, α first.
     """
     alphas, tilts = (points_along(hint, count) for hint in _HINTS)
-    lights, weights = light_directions(PS.axes[2], directions, "uniform")
+    lights, weights = light_directions(directions, "uniform")
     materials = mesh(alphas, tilts)[:, :, None, :]
     shape = (count, count, len(lights), 2)
     points = np.concatenate(
