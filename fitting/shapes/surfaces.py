@@ -33,10 +33,13 @@ def surface_names(surfaces: list[str], degree: int, x: str, y: str) -> list[str]
 def flat_start(
     values: list[float], degree: int, slopes: dict[int, tuple[float, float]] | None = None
 ) -> np.ndarray:
-    """Return coefficients of constant surfaces; `slopes` gives some of them slopes by x and y."""
+    """Return coefficients of constant surfaces; `slopes` gives some of them slopes by x and y.
+
+    Surfaces of degree 0 have no slopes.
+    """
     start = np.zeros((len(values), (degree + 1) * (degree + 2) // 2))
     start[:, 0] = values
-    for k, (by_x, by_y) in (slopes or {}).items():
+    for k, (by_x, by_y) in (slopes or {}).items() if degree else ():
         start[k, [degree + 1, 1]] = by_x, by_y
     return start.ravel()
 
