@@ -42,7 +42,7 @@ report: setup  ## write build/report.html: every table's worth, the figures, and
 verify: toolchains  ## compile, run and compare the exported code of every table, in every language
 	$(BIN)/shadefit verify ps g q r velvet published/ps published/g published/q published/r exact/ps \
 	    --precision all
-	$(BIN)/shadefit verify $(patsubst coefficients/%.json,%,$(wildcard coefficients/best/*.json))
+	$(BIN)/shadefit verify $(patsubst coefficients/tables/fuzz/%.json,%,$(wildcard coefficients/tables/*/best/*.json))
 
 bench: setup  ## reproduce the claims of speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py

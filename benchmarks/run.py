@@ -20,13 +20,11 @@ import numpy as np
 from plain_scipy import directions, lights_of, views
 from plain_scipy import scattered_fraction as by_numpy
 
-from coefficients.signatures import light_cosines
-from fitting.cells import fit_cells
-from fitting.errors import exact_values
-from fitting.paper import RationalPs, RationalR
 from fitting.points.grids import trapezoid_grid
 from integrals import PS, R
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
+from quantities.fuzz.lights import cosines_at
+from quantities.fuzz.supplement import RATIONAL_PS, RATIONAL_R
 
 HERE = Path(__file__).parent
 CELLS = 5
@@ -59,23 +57,24 @@ def refit_all(folder: Path) -> dict:
 
 def surfaces(path: Path) -> None:
     """Write the surfaces that the fits of the plain side start from: not part of what is timed."""
-    grid = trapezoid_grid(RationalPs.axes[:2], 65)
-    cells = np.array(fit_cells(grid, "uniform").coefficients).reshape(-1, 6)
+    grid = trapezoid_grid(RATIONAL_PS.axes[:2], 65)
+    fits = RATIONAL_PS.solver.node_fits(RATIONAL_PS, grid, "uniform")
+    cells = np.array(fits.optimum).reshape(-1, 6)
     cells[:, 0] -= 0.5
     chosen = np.random.default_rng(2).choice(65**2, CELLS, replace=False)
     theta, phi, _ = lights_of(48)
     exact = []
     for cell in chosen:
         material = np.broadcast_to(grid.points[cell], (len(theta), 2))
-        exact.append(exact_values(PS, np.column_stack([material, theta, phi])))
-    other = trapezoid_grid(RationalR.axes, 65)
+        exact.append(PS.values(np.column_stack([material, theta, phi])))
+    other = trapezoid_grid(RATIONAL_R.axes, 65)
     np.savez(
         path,
         ps_points=grid.points,
         cells=cells.T,
         ps_exact=np.array(exact),
         r_points=other.points,
-        r=exact_values(R, other.points),
+        r=R.values(other.points),
     )
 
 
@@ -117,7 +116,7 @@ def throughput() -> dict:
         ("float64", jnp.float64, FLOAT64_STEPS),
     ):
         closed = jax.jit(lambda c, a, b, alpha, s=steps: scattered_fraction(c, a, b, alpha, s))
-        values = [jnp.asarray(each, dtype) for each in (*light_cosines(materials), alpha)]
+        values = [jnp.asarray(each, dtype) for each in (*cosines_at(materials), alpha)]
         assert closed(*values).dtype == dtype
         rates[f"closed form, JAX {name}"] = rate(closed, *values, count=count)
     few = 64

@@ -42,6 +42,9 @@ def _require_agreement(table: Table, form: Form) -> None:
             raise _contradiction(table, f"the unit of {name}", its_unit, unit)
         if not np.allclose(its_domain, domain, ROUNDING, ROUNDING):
             raise _contradiction(table, f"the domain of {name}", its_domain, domain)
+    measures = list(form.reference.sampling.measures)
+    if table.weight is not None and table.weight not in measures:
+        raise _contradiction(table, "the weight", table.weight, measures)
     names = np.ravel(np.array(table.coefficient_names, dtype=object))
     expected = np.ravel(np.array(form.coefficient_names, dtype=object))
     for index, (its_name, name) in enumerate(zip(names, expected, strict=True)):

@@ -30,7 +30,6 @@ Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
 
 
-# Compared and hashed by identity: a table cannot be hashed, and programs are kept by entry.
 @dataclass(frozen=True, eq=False)
 class Entry:
     """What a name stands for: its quantity, and the table with its fitted form.
@@ -124,6 +123,14 @@ def resolve(name: str) -> Entry:
     )
 
 
+def load(name: str) -> FittedForm:
+    """Return the fitted form of a table, by its name or its file's path.
+
+    It is called with the values of its axes. Raises ValueError as `resolve` does.
+    """
+    return resolve(name).require_fitted()
+
+
 def entries(owner: Problem | None = None) -> list[Entry]:
     """Return the tables that are kept here, of one quantity or of all.
 
@@ -187,7 +194,7 @@ def path_of(name: str) -> Path:
 def corrected(table: Table) -> Table:
     """Apply the errata that a published table records; others are returned as they are.
 
-    Applied errata are marked, so that they are not applied again when the table is written and read.
+    Applied errata are marked, so that they are not applied again when the table is read.
     """
     if table.publication is None:
         return table

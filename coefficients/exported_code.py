@@ -132,8 +132,7 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
     own = None
     if entry.fitted is None:
         # The same points and steps, without the roundings of the precision.
-        double = replace(trial, precision="double", calls=_calls(entry, "double"))
-        left = trial.against_integral(double.form)
+        left = trial.against_integral(replace(trial, precision="double").form)
         head["Error in exact arithmetic"] = f"{entry.exact_code.left}: {text_of(left)} (in float64)"
     else:
         known = proofs(entry)
@@ -167,10 +166,6 @@ def closed_form_beside(entry: Entry) -> Entry | None:
     if entry.fitted is None or entry.fitted.form.inputs is None:
         return None
     return resolve(f"{EXACT}/{entry.problem.name}") if entry.problem.exact_code else None
-
-
-def _calls(entry: Entry, precision: str) -> CallSequence:
-    return CallSequence(entry.functions(precision), entry.arguments_at)
 
 
 def _domain(functions: Sequence[Function]) -> str:

@@ -49,7 +49,7 @@ def marks(owner: Problem) -> tuple[Mark, ...]:
 
 
 def closed_form(owner: Problem) -> list[Mark]:
-    """Return the mark of the closed form, evaluated in float32; none where there is no such form."""
+    """Return the mark of the closed form, evaluated in float32, if there is such a form."""
     reference = published(owner)
     if owner.exact_code is None or reference is None:
         return []

@@ -13,7 +13,7 @@ _DIGITS = 1e4
 
 
 def proofs(entry: Entry) -> list[str]:
-    """Say what is proven of a table; of a file, which may state what it likes, it is proven anew."""
+    """Say what is proven of a table. A file may state what it likes: its form is proven anew."""
     table = entry.require_table()
     if entry.kind != "file":
         return proof_text(table.certificates)

@@ -95,7 +95,7 @@ class Search:
         )
 
     def candidates(self) -> Iterator[Form]:
-        """Yield the forms that are tried; those of the best tables first, if the quantity says so."""
+        """Yield the forms to try, those of the best tables first if the quantity says so."""
         assert self.owner.candidates is not None
         lower = self.lower or {}
         tried = self.owner.candidates(lower)

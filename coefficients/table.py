@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from coefficients.json_text import laid_out, read_object
+from fitting.goal import Norm, Rounding, Side
 
 SCHEMA = "shadefit.table/1"
 # No table is near this size: a larger file is refused before it is parsed.
@@ -28,7 +29,7 @@ Row = Annotated[list[Number], Field(min_length=1, max_length=4096)]
 Labels = Annotated[list[Text], Field(max_length=4096)]
 LabelRow = Annotated[list[Text], Field(min_length=1, max_length=4096)]
 Pair = Annotated[list[int], Field(min_length=2, max_length=2)]
-# What tells the members of a family of forms apart: checked by fitting/families.
+# What tells the members of a family of forms apart: checked by quantities/family.py.
 Shape = Annotated[
     dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]], _CLOSED
 ]
@@ -74,10 +75,10 @@ class GridRecord(_Part):
 class GoalRecord(_Part):
     """What the fit made small: see fitting/goal.py."""
 
-    norm: Literal["l2", "linf"]
+    norm: Norm
     relative: bool
-    side: Literal["both", "below", "above"]
-    rounding: Literal["none", "float32", "float16"]
+    side: Side
+    rounding: Rounding
     bounded: bool = False
 
 
@@ -172,7 +173,7 @@ class Table(_Part):
     coefficients: Vector | Annotated[list[Row], Field(min_length=1, max_length=64)]
     coefficient_names: Labels | Annotated[list[LabelRow], Field(min_length=1, max_length=64)]
     grid: GridRecord | None = None
-    weight: Literal["uniform", "solid-angle", "cosine"] | None = None
+    weight: Name | None = None
     goal: GoalRecord | None = None
     reference: Reference | None = None
     errors: ErrorRecords | None = None
@@ -205,7 +206,7 @@ def _shape(nested: list) -> tuple[int, ...]:
 
 
 def json_schema() -> dict[str, Any]:
-    """Give the JSON Schema that every table is validated against."""
+    """Return the JSON Schema that every table is validated against."""
     return Table.model_json_schema(by_alias=True)
 
 
@@ -251,6 +252,6 @@ def read(path: Path) -> Table:
 
 
 def serialise(table: Table) -> str:
-    """Give a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
+    """Return a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
     data = table.model_dump(by_alias=True, exclude_none=True)
     return laid_out(data) + "\n"

@@ -1,18 +1,47 @@
 """Compact forms of exact values: fitted to a goal, measured on points no fit saw, certified.
 
-A `Form` is a function without the values of its coefficients; `fit` finds these, whatever the form,
-and returns a `Fit` with its errors and proofs. Rooms: `shapes/` (generic forms), `points/` (where
-forms are fitted and judged), `solvers/`, and `proofs/`.
+A `Form` is a function without the values of its coefficients; `fitting.fit.fit` finds these,
+whatever the form, and returns a `Fit` with its errors and proofs. Rooms: `shapes/` (generic forms),
+`points/` (where forms are fitted and judged), `solvers/`, and `proofs/`.
+
+The names below are imported when they are first used: `fitting.goal` does not wait for JAX.
 """
 
-from fitting.errors import Errors as Errors
-from fitting.errors import form_values as form_values
-from fitting.errors import judge as judge
-from fitting.fit import Fit as Fit
-from fitting.form import FittedForm as FittedForm
-from fitting.form import Form as Form
-from fitting.form import Proofs as Proofs
-from fitting.form import Stage as Stage
-from fitting.goal import Goal as Goal
-from fitting.points.domain import Domain as Domain
-from fitting.points.domain import common_domain as common_domain
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fitting.errors import Errors as Errors
+    from fitting.errors import form_values as form_values
+    from fitting.errors import judge as judge
+    from fitting.fit import Fit as Fit
+    from fitting.form import FittedForm as FittedForm
+    from fitting.form import Form as Form
+    from fitting.form import Proofs as Proofs
+    from fitting.form import Stage as Stage
+    from fitting.form import plain_form as plain_form
+    from fitting.goal import Goal as Goal
+    from fitting.points.domain import Domain as Domain
+    from fitting.points.domain import common_domain as common_domain
+
+_MODULES = {
+    "Errors": "fitting.errors",
+    "form_values": "fitting.errors",
+    "judge": "fitting.errors",
+    "Fit": "fitting.fit",
+    "FittedForm": "fitting.form",
+    "Form": "fitting.form",
+    "Proofs": "fitting.form",
+    "Stage": "fitting.form",
+    "plain_form": "fitting.form",
+    "Goal": "fitting.goal",
+    "Domain": "fitting.points.domain",
+    "common_domain": "fitting.points.domain",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)

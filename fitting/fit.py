@@ -67,13 +67,16 @@ def fit(
 
     With `nodes`, squared errors are first made small on a tensor grid of so many nodes an axis; a
     goal other than that is then pursued on scattered points, from there. Without, all is done on
-    scattered points, from the form's own starts. `measure` names one of the quantity's measures;
-    `progress` is told of each stage; `exchange` is the solver on scattered points.
+    scattered points, from the form's own starts. `measure` names one of the quantity's measures; a
+    quantity that does not have it weighs its errors equally. `progress` is told of each stage;
+    `exchange` is the solver on scattered points.
 
-    Raises ValueError for a number of nodes or a measure that is not allowed, and for a fit with a
-    denominator that is not shown to be positive. A bounded goal is refused where it is not proven.
+    Raises ValueError for a number of nodes that is not allowed, and for a fit with a denominator
+    that is not shown to be positive. A bounded goal is refused where it is not proven.
     """
-    _require(form, goal, nodes, measure)
+    _require(form, goal, nodes)
+    # A quantity without that measure weighs its errors equally.
+    measure = measure if measure in form.reference.sampling.measures else "uniform"
     start = None
     if nodes is not None:
         found = (form.solver or OnGrid()).fit(form, nodes, measure, progress)
@@ -86,12 +89,9 @@ def fit(
     return _scattered(form, coefficients, sample, goal, measure)
 
 
-def _require(form: Form, goal: Goal, nodes: int | None, measure: str) -> None:
-    measures = form.reference.sampling.measures
+def _require(form: Form, goal: Goal, nodes: int | None) -> None:
     if nodes is not None and not MIN_NODES <= nodes <= MAX_NODES:
         raise ValueError(f"grid = {nodes}: allowed are {MIN_NODES} to {MAX_NODES} nodes an axis")
-    if measure != "uniform" and len(measures) > 1 and measure not in measures:
-        raise ValueError(f"weight = {measure!r}: allowed are {', '.join(measures)}")
     if goal.bounded and len(form.axes) > MOST_AXES and form.proofs.margins is None:
         raise ValueError(f"bounded = True: no proof is known that would bound {form.name}")
 

@@ -1,6 +1,7 @@
 """What a form is: a compact function with coefficients that stands for a quantity."""
 
-from collections.abc import Callable
+import inspect
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +26,11 @@ class Stage:
 
     call: Callable[..., Any]
     summary: str = ""
+
+
+def unguarded(*_) -> Array:
+    """Let a fit step where it will (for `Proofs.positive`): only the certificate excludes poles."""
+    return jnp.ones(())
 
 
 @dataclass(frozen=True)
@@ -103,8 +109,42 @@ class Form:
         return self.stages[0].call(coefficients, *shared)
 
     def fitted(self, coefficients: Array | np.ndarray) -> "FittedForm":
-        """Give the form with coefficients, in their shape or flat."""
+        """Return the form with coefficients, which are in their shape or flat."""
         return FittedForm(self, jnp.asarray(coefficients).reshape(self.coefficient_shape))
+
+
+def plain_form(
+    function: Callable[..., Any],
+    reference: Reference,
+    start: Sequence[float] = (),
+    name: str | None = None,
+    axes: tuple[Axis, ...] | None = None,
+) -> Form:
+    """Make a form of a plain function: arguments named like axes are axes, the rest coefficients.
+
+    Arguments: `start`, coefficients that a fit may start from, none for a form that is a quotient
+    of linear functions; `name`, by default the function's; `axes`, those of the reference
+    restricted to the form's domain. The first line of the function's docstring is the equation.
+    Raises ValueError for a function that does not take every axis, and for a start of another
+    length.
+    """
+    axes = reference.axes if axes is None else axes
+    of_axes = [axis.name for axis in axes]
+    arguments = list(inspect.signature(function).parameters)
+    coefficients = [each for each in arguments if each not in of_axes]
+    own = name or function.__name__.replace("_", "-")
+    for missing in (each for each in of_axes if each not in arguments):
+        raise ValueError(f"{own} does not take {missing!r}: allowed is a function of all axes")
+    if len(start) not in (0, len(coefficients)):
+        raise ValueError(f"{own}: {len(start)} starts given for {len(coefficients)} coefficients")
+
+    def value(c, *point):
+        given = dict(zip(of_axes, point, strict=True))
+        return function(**given, **{key: c[k] for k, key in enumerate(coefficients)})
+
+    summary = (inspect.getdoc(function) or own).splitlines()[0]
+    starts = (np.array(start, float),) if len(start) else ()
+    return Form(own, summary, reference, axes, coefficients, (Stage(value),), starts=starts)
 
 
 class FittedForm(eqx.Module):

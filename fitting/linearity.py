@@ -1,6 +1,6 @@
-"""What a form's traced program tells of it: what is linear in the coefficients, what must be positive.
+"""What a form's traced program tells: what is linear in the coefficients, what must be positive.
 
-A form that is a quotient (a₀ + a·c)/(b₀ + b·c) of functions that are linear in its coefficients c is
+Whether a form is a quotient (a₀ + a·c)/(b₀ + b·c), linear in its coefficients c above and below, is
 found by evaluating its program over such quotients instead of numbers.
 """
 
@@ -152,7 +152,7 @@ def _division(one: Any, other: Any) -> _Quotient:
 
 
 def _lifted(name: str) -> Callable[..., Any]:
-    """Apply an operation to plain numbers as NumPy does, to quotients by the rule, if there is one."""
+    """Return an operation on numbers, by NumPy, and on quotients, by a rule if there is one."""
     rules = {
         "add": _sum(1.0),
         "sub": _sum(-1.0),
@@ -176,7 +176,7 @@ _RULES = {name: _lifted(name) for name in OPERATIONS}
 
 @functools.lru_cache(maxsize=64)
 def derived_positive(form: Form) -> Callable[..., Array]:
-    """Give a function of coefficients and a point: the least of what must stay positive there.
+    """Return a function of coefficients and a point: the least of what must stay positive there.
 
     These are the divisors, radicands and arguments of logarithms in the form's program that hold
     a coefficient. A divisor that is itself a root is left out: its radicand stands for it.
@@ -207,12 +207,12 @@ def derived_positive(form: Form) -> Callable[..., Array]:
 
 
 def positive_of(form: Form) -> Callable[..., Array]:
-    """Give what a fit of the form keeps positive: the form's own function, or the derived one."""
+    """Return what a fit of the form keeps positive: its own function, or the derived one."""
     return form.proofs.positive or derived_positive(form)
 
 
 def _holding(program: Program, size: int) -> set[int]:
-    """Give the values of a program that depend on one of its first `size` inputs."""
+    """Return the values of a program that depend on one of its first `size` inputs."""
     held = set(range(size))
     for number, step in enumerate(program.steps, start=len(program.inputs)):
         if any(type(operand) is int and operand in held for operand in step.operands):

@@ -3,7 +3,7 @@
 import functools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, NamedTuple
 
 import jax
@@ -83,6 +83,31 @@ class Axis:
             value = self.lower + width * fraction
         # Rounding may miss the upper end by one unit in the last place, to either side.
         return np.where(fraction == 1, self.upper, np.minimum(value, self.upper))
+
+
+def restricted(axes: tuple[Axis, ...], **domains: tuple[float, float]) -> tuple[Axis, ...]:
+    """Return axes of which some, by name, have smaller domains: `restricted(axes, alpha=(0.1, 1))`.
+
+    Raises ValueError for a name that no axis has, and for a domain that is not part of the axis's.
+    """
+    names = [axis.name for axis in axes]
+    for name, (lower, upper) in domains.items():
+        if name not in names:
+            raise ValueError(f"{name!r} is no axis: allowed are {', '.join(names)}")
+        axis = axes[names.index(name)]
+        if not axis.lower <= lower < upper <= axis.upper:
+            raise ValueError(f"{name} in [{lower:g}, {upper:g}]: allowed is part of {axis.domain}")
+    return tuple(
+        axis
+        if axis.name not in domains
+        else replace(
+            axis,
+            lower=domains[axis.name][0],
+            upper=domains[axis.name][1],
+            open_below=axis.open_below and domains[axis.name][0] == axis.lower,
+        )
+        for axis in axes
+    )
 
 
 def box_of(axes: tuple[Axis, ...]) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from math import isfinite, pi
 from typing import Any
 
 import numpy as np
@@ -34,30 +35,115 @@ class ExactCode:
 
 @dataclass(frozen=True)
 class AxisHint:
-    """How an axis is drawn: its label, the range shown, and where a slider begins.
+    """How an axis is drawn.
 
-    Values are multiplied by `factor` to be shown, such as 180/π for degrees.
+    Pictures show the axis from `lower` to `upper`. In the report's explorer its slider goes over
+    `explored` (None: the same range) and begins at `start`. All four numbers are in the axis's own
+    unit. Shown values are multiplied by `factor` and have the unit `unit`, such as 180/π and "°".
+
+    `label` is the text at the axis, without the unit; `short_label` (None: `label`) is used where
+    there is little room. Both may contain mathtext. `logarithmic` holds for curves and maps.
     """
 
     label: str
     lower: float
     upper: float
     start: float
+    explored: tuple[float, float] | None = None
+    short_label: str | None = None
     logarithmic: bool = False
     factor: float = 1.0
+    unit: str = ""
+
+    @classmethod
+    def default(cls, axis: Axis) -> "AxisHint":
+        """Return the hint of an axis without one: its whole domain, angles in degrees.
+
+        An infinite end is replaced by a finite one, and an end that is no part of the domain by a
+        value near it.
+        """
+        lower = axis.lower if isfinite(axis.lower) else min(-1.0, 10 * axis.upper)
+        upper = axis.upper if isfinite(axis.upper) else max(1.0, 10 * lower)
+        if axis.open_below:
+            lower += (upper - lower) / 1000
+        angle = axis.unit == "rad"
+        return cls(
+            axis.symbol,
+            lower,
+            upper,
+            (lower + upper) / 2,
+            logarithmic=axis.scale == "logarithmic" and lower > 0,
+            factor=180 / pi if angle else 1.0,
+            unit="°" if angle else "",
+        )
+
+    @property
+    def slider(self) -> tuple[float, float]:
+        """The range of the slider."""
+        return self.explored or (self.lower, self.upper)
+
+    @property
+    def shown_label(self) -> str:
+        """The label with the unit of the shown values."""
+        return f"{self.label} / {self.unit}" if self.unit else self.label
+
+
+@dataclass(frozen=True)
+class HemisphereHint:
+    """Two axes that are a direction, and can be drawn as a disc: the hemisphere from above.
+
+    `polar` and `azimuth` name the axes, in radians; `caption` says what the disc shows.
+    """
+
+    polar: str
+    azimuth: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class AverageHint:
+    """The exact value as a weighted sum over another quantity, for the report's explorer.
+
+    The explorer needs an expression, which a quantity without closed form does not have. The
+    `integrand` has one, and has the same first axes. For each of its further axes `rules` has nodes
+    and weights, which are multiplied.
+    """
+
+    integrand: "Problem"
+    rules: tuple[tuple[np.ndarray, np.ndarray], ...]
 
 
 @dataclass(frozen=True)
 class PlotHints:
     """How a quantity is drawn.
 
-    `axes` has a hint for each axis, by name. Errors beyond ±`largest_error` are drawn as if they
-    were that. `cost_label` says what the operations of a form are counted for.
+    * `axes` has a hint for each axis, by name; an axis without one gets `AxisHint.default`.
+    * `values` is the range of the quantity that is drawn; None stands for that of its exact values.
+      `value_label` is its label and `exact_label` the legend of its exact values, with mathtext.
+    * The colours of maps end at an error of ±`largest_error`.
+    * Surfaces are seen from `azimuth`, in degrees, and have `surface_nodes` points an axis. Maps of
+      errors have `map_nodes` points an axis.
+    * `cost_label` says what the operations of a form are counted for.
+    * `against` names the axis that the explorer first draws curves against (None: the last one).
+    * `hemisphere` and `average` are for quantities that have a direction, or are a sum.
     """
 
-    axes: Mapping[str, AxisHint]
+    axes: Mapping[str, AxisHint] = field(default_factory=dict)
+    values: tuple[float, float] | None = None
+    value_label: str | None = None
+    exact_label: str = "exact"
     largest_error: float = 0.1
+    azimuth: float = -60.0
+    surface_nodes: int = 41
+    map_nodes: int = 61
     cost_label: str = "operations"
+    against: str | None = None
+    hemisphere: HemisphereHint | None = None
+    average: AverageHint | None = None
+
+    def axis(self, axis: Axis) -> AxisHint:
+        """Return the hint of an axis."""
+        return self.axes.get(axis.name) or AxisHint.default(axis)
 
 
 @dataclass(frozen=True, eq=False)

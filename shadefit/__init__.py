@@ -1,1 +1,88 @@
-"""The application: the command line and what it prints."""
+"""shadefit: exact shading integrals, certified curve fits, and shader code that has been run.
+
+`import shadefit` is all that a program needs. The names below are imported when they are first
+used, so that the import itself does not wait for JAX. Float64 must be on before anything is
+evaluated: `jax.config.update("jax_enable_x64", True)`.
+
+* Exact values: `PS`, `G`, `Q`, `R`, `VELVET` are the references of the fuzz BRDF; `Reference`,
+  `Axis`, `Sampling`, `Estimate` and `leg` make others.
+* Fits: `fit` finds the coefficients of a `Form` for a `Goal` and returns a `Fit`; `plain_form`
+  makes a form of a plain function.
+* Quantities: `problem(name)`, `problems()`, `register(problem)`; `Problem`, `CallingConvention`,
+  `Argument`, `PlotHints`, `AxisHint`.
+* Tables: `load(name)` returns the fitted form of a table; `resolve(name)` all that is known of it.
+* Code: `write_source`, `function`, `Parameter`, `LANGUAGES`, `source_file`.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from coefficients.catalogue import Entry as Entry
+    from coefficients.catalogue import load as load
+    from coefficients.catalogue import resolve as resolve
+    from coefficients.exported_code import exported_values as exported_values
+    from coefficients.exported_code import source_file as source_file
+    from coefficients.record import table_of as table_of
+    from coefficients.table import Table as Table
+    from fitting import Fit as Fit
+    from fitting import FittedForm as FittedForm
+    from fitting import Form as Form
+    from fitting import Goal as Goal
+    from fitting import Stage as Stage
+    from fitting import plain_form as plain_form
+    from fitting.fit import fit as fit
+    from integrals import PS as PS
+    from integrals import VELVET as VELVET
+    from integrals import Axis as Axis
+    from integrals import Estimate as Estimate
+    from integrals import G as G
+    from integrals import Q as Q
+    from integrals import R as R
+    from integrals import Reference as Reference
+    from integrals import Sampling as Sampling
+    from integrals.reference import leg as leg
+    from programs import LANGUAGES as LANGUAGES
+    from programs import Parameter as Parameter
+    from programs import function as function
+    from programs import write_source as write_source
+    from quantities import Problem as Problem
+    from quantities import problem as problem
+    from quantities import problems as problems
+    from quantities import register as register
+    from quantities.calling_convention import Argument as Argument
+    from quantities.calling_convention import CallingConvention as CallingConvention
+    from quantities.problem import AxisHint as AxisHint
+    from quantities.problem import PlotHints as PlotHints
+
+_HOMES = {
+    "coefficients.catalogue": ("Entry", "load", "resolve"),
+    "coefficients.exported_code": ("exported_values", "source_file"),
+    "coefficients.record": ("table_of",),
+    "coefficients.table": ("Table",),
+    "fitting": ("Fit", "FittedForm", "Form", "Goal", "Stage", "plain_form"),
+    "fitting.fit": ("fit",),
+    "integrals": (
+        *("PS", "G", "Q", "R", "VELVET"),
+        *("Axis", "Estimate", "Reference", "Sampling"),
+    ),
+    "integrals.reference": ("leg",),
+    "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
+    "quantities": ("Problem", "problem", "problems", "register"),
+    "quantities.calling_convention": ("Argument", "CallingConvention"),
+    "quantities.problem": ("AxisHint", "PlotHints"),
+}
+_MODULES = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = tuple(_MODULES)
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(_MODULES)

@@ -36,7 +36,7 @@ class Sample:
 
 
 def sample_of(form: Form, goal: Goal = LEAST_SQUARES, measure: str = "uniform") -> Sample:
-    """Return the sample that a form is fitted on; `measure` names one of the quantity's measures."""
+    """Return the sample that a form is fitted on; `measure` names a measure of the quantity."""
     reference = form.reference
     points = scattered_points(reference, form.axes, reference.sampling.fitted, SEED)
     return _sample(points, _estimates(reference, form.axes), form, goal, measure)
@@ -60,10 +60,8 @@ def scale_at(
     A relative error takes 1/|f|. A measure of the quantity multiplies squared errors by its
     density, and the largest error by its own factor.
     """
-    chosen = form.reference.sampling.measures.get(measure)
+    chosen = form.reference.sampling.measures[measure]
     scale = 1 / np.abs(exact) if goal.relative else np.ones(len(exact))
-    if chosen is None:
-        return scale
     factor = np.sqrt(chosen.density(points)) if goal.norm == "l2" else chosen.largest(points)
     return scale * factor
 

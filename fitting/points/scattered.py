@@ -20,7 +20,7 @@ _STRETCH = 1.25
 def scattered_points(
     reference: Reference, axes: tuple[Axis, ...], exponent: int, seed: int
 ) -> np.ndarray:
-    """Return points (n, axes): 2^exponent inside, half as many of which some lie on faces.
+    """Return 2^exponent points (n, axes) inside a domain, and half as many more, some on its faces.
 
     They are spread along each axis by its scale. The quantity's `sampling.extra` adds further ones.
     """

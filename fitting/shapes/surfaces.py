@@ -8,7 +8,7 @@ from jax import Array
 
 
 def surface_values(coefficients, count: int, degree: int, x, y) -> list[Array]:
-    """Return `count` polynomials of total degree `degree` in x and y, their coefficients in a row."""
+    """Return `count` polynomials of a total degree in x and y, their coefficients in a row."""
     powers = _powers(degree)
     size = len(powers)
     return [

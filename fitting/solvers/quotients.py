@@ -1,9 +1,9 @@
 """Least squares fits of quotients whose features are known (fitting/shapes/quotients.py).
 
-A fit starts from the best polynomial, its denominator one; no fit starts from published constants.
-A penalty on small denominators keeps Levenberg–Marquardt from stepping across a pole. Every start
-without a pole in the domain that was tried ends in the same minimum (tests/fitting/test_quotients.py);
-starts with one do not.
+A fit starts from the best polynomial, whose denominator is one; no fit starts from published
+constants. A penalty on small denominators keeps Levenberg–Marquardt from stepping across a pole.
+All starts without a pole in the domain that were tried end in the same minimum; starts with a pole
+do not (tests/fitting/test_quotients.py).
 """
 
 from collections.abc import Callable
@@ -41,8 +41,8 @@ def fit_quotients(
     kept above the floor at the points `penalised`. The polynomial start fits `targets`, (n,) or
     (n, rows), which are the values that the quotients should have. To be called within `jax.jit`.
     """
-    split, offset = shape.above + 1, np.asarray(shape.offset)
-    numerator, features, factor = shape.columns(points)
+    split, offset = shape.above + 1, jnp.asarray(shape.offset)
+    numerator, features, factor = shape.columns(jnp.asarray(points))
     penalty_features = shape.columns(penalised)[1]
     rows = targets.shape[1:]
     weights = jnp.asarray(root).reshape(-1, *(1 for _ in rows))
@@ -54,7 +54,7 @@ def fit_quotients(
         values = offset + column * (numerator @ p) / (1 + features @ q)
         return jnp.concatenate([errors(values).ravel(), _penalty(1 + penalty_features @ q)])
 
-    matrix = (root * factor)[:, None] * numerator
+    matrix = (jnp.asarray(root) * factor)[:, None] * numerator
     start = solve_linear(matrix, weights * (targets - offset))
     polynomials = jnp.concatenate([start, jnp.zeros((shape.below, *rows))]).T
     return solve_nonlinear(residual, polynomials.ravel(), steps).reshape(*rows, -1)

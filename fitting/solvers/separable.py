@@ -58,7 +58,7 @@ class Separable:
     description: str = "QR per cell; Levenberg–Marquardt (optimistix) of all coefficients together"
 
     def fit(self, form: Form, count: int, measure: str, progress: Progress) -> GridFit:
-        """Fit on `count` nodes an axis; `measure` names the weights of the second stage's points."""
+        """Fit on `count` nodes an axis; `measure` names the weights of the inner points."""
         reference = form.reference
         grid = trapezoid_grid(form.axes[: form.shared], count)
         progress(f"exact {reference.symbol} and the best combination in every cell")
@@ -104,7 +104,7 @@ class Separable:
         root = np.sqrt(grid.weights)
         shape = fits.optimum.shape
 
-        outer = root.reshape(*shape[:2], 1)
+        outer = jnp.asarray(root.reshape(*shape[:2], 1))
 
         @jax.jit
         def fit(points: Array, penalised: Array, factors: Array, optimum: Array) -> Array:

@@ -194,11 +194,13 @@ def _near_fibre(points: np.ndarray) -> np.ndarray:
 
 
 def _sine(points: np.ndarray) -> np.ndarray:
-    return np.sin(points[:, 2])
+    _, _, theta_u, _ = points.T
+    return np.sin(theta_u)
 
 
 def _cosine(points: np.ndarray) -> np.ndarray:
-    return np.cos(points[:, 2])
+    _, _, theta_u, _ = points.T
+    return np.cos(theta_u)
 
 
 # A least-squares fit weights light directions uniformly in the angles, by solid angle, or by

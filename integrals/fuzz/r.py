@@ -72,7 +72,8 @@ _NODES, _NODES_LOW_ALPHA, _LOW_ALPHA = 32, 96, 0.15
 
 
 def _nodes_at(points: np.ndarray) -> dict[str, int]:
-    low = np.min(points[:, 0]) < _LOW_ALPHA
+    alpha, _ = points.T
+    low = np.min(alpha) < _LOW_ALPHA
     return {"nodes": _NODES_LOW_ALPHA if low else _NODES}
 
 

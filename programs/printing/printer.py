@@ -16,6 +16,7 @@ from programs.printing.expression import (
 )
 from programs.printing.identifiers import ascii_text, free_name
 from programs.printing.line_breaking import INDENT, Break, Tokens, break_lines, nested, wrap_words
+from programs.printing.lowering import lowered
 from programs.printing.statement_choice import choose_statements
 from programs.tracing.tracer import trace
 
@@ -63,7 +64,7 @@ def write_source(
 def _function(
     function: Function, language: Language, precision: str, constants: str, taken: set[str]
 ) -> list[str]:
-    program = trace(function)
+    program = lowered(trace(function), language.functions[precision])
     if len(program.steps) > language.max_operations:
         raise ValueError(
             f"{function.name} takes {len(program.steps)} operations; "

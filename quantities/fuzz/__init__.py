@@ -1,4 +1,4 @@
-"""The quantities of the fuzz BRDF of Ghost of Tsushima: P_s, G, Q, R, and the velvet factor r(k)."""
+"""The quantities of the fuzz BRDF of Ghost of Tsushima: P_s, G, Q, R, and velvet's r(k)."""
 
 from quantities.fuzz.g import G as G
 from quantities.fuzz.ps import PS as PS

@@ -53,10 +53,16 @@ G = Problem(
     ),
     plot=PlotHints(
         {
-            "density": AxisHint("density $d$", 0.001, 1.0, 0.2, logarithmic=True),
+            "density": AxisHint(
+                "density $d$", 0.001, 0.5, 0.2, explored=(0.001, 1.0), logarithmic=True
+            ),
             "cos_v": AxisHint("$v·n$", 0.001, 1.0, 0.5, logarithmic=True),
         },
+        values=(0.0, 1.0),
         largest_error=0.1,
+        azimuth=50.0,
+        surface_nodes=61,
+        map_nodes=121,
     ),
     topic="fuzz",
 )

@@ -7,17 +7,17 @@ alone, are rational. The power 1/(1 + x)⁴ may stand for the exponential.
 import functools
 import itertools
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from fitting.form import Form, Proofs, Stage
+from fitting.form import Form, Proofs, Stage, unguarded
 from integrals import G
+from integrals.reference import restricted
 from shading.types import Scalar
 
-AXES = (replace(G.axes[0], lower=0.001, upper=0.5), replace(G.axes[1], lower=0.001))
+AXES = restricted(G.axes, density=(0.001, 0.5), cos_v=(0.001, 1.0))
 
 # Names of a piece's coefficients, the piece as a function of them and of d and ν, and a start.
 Piece = tuple[tuple[str, ...], Callable, tuple[float, ...]]
@@ -44,11 +44,6 @@ FACTORS: dict[str, Piece] = {
     ),
 }
 DECAYS = ("exponential", "power")
-
-
-def _unguarded(*_) -> Array:
-    """Let a fit step where it will: the certificate has the last word on poles."""
-    return jnp.ones(())
 
 
 @functools.cache
@@ -96,7 +91,7 @@ def tied_g(*, poles: int, root: int) -> Form:
     """Return the form of G that is d/ν + … for small d and one at ν = 0, both exactly.
 
     (1 − e^(−d (1/ν + w)/(1 + c√d))) / (1 + νw): the rate and the factor share w(ν), a constant and
-    `poles` (0 or 1); `root` = 1 slows the rate by 1/(1 + c√d). The coefficients are those of w, and c.
+    `poles` (0 or 1); `root` = 1 slows the rate by 1/(1 + c√d). The coefficients are w's, then c.
     """
 
     def value(c, density: Scalar, cos_v: Scalar) -> Array:
@@ -121,7 +116,7 @@ def tied_g(*, poles: int, root: int) -> Form:
         stages=(Stage(value),),
         starts=(first, first * 1.3),
         shape={"poles": poles, "root": root},
-        proofs=Proofs(positive=_unguarded),
+        proofs=Proofs(positive=unguarded),
     )
 
 

@@ -4,8 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from integrals.fuzz.ps import MEASURES
-from integrals.reference import Axis
+from integrals.fuzz.ps import MEASURES, THETA_U
 from shading import direction_cosines
 from shading.types import Scalar
 
@@ -25,7 +24,7 @@ def cosines_at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return cos_un, cos_ut, cos_nt
 
 
-def light_directions(theta_u: Axis, count: int, measure: str) -> tuple[np.ndarray, np.ndarray]:
+def light_directions(count: int, measure: str) -> tuple[np.ndarray, np.ndarray]:
     """Return lights (count², 2) as θu, φ and weights (count²,) that sum to one.
 
     Gauss–Legendre in θu, midpoints in φ over [0, π], because P_s is even in φ. `measure` is the
@@ -33,7 +32,7 @@ def light_directions(theta_u: Axis, count: int, measure: str) -> tuple[np.ndarra
     solid angle ('uniform', 'solid-angle', 'cosine').
     """
     x, w = np.polynomial.legendre.leggauss(count)
-    theta = theta_u.lower + (theta_u.upper - theta_u.lower) * (x + 1) / 2
+    theta = THETA_U.lower + (THETA_U.upper - THETA_U.lower) * (x + 1) / 2
     phi = (np.arange(count) + 0.5) * np.pi / count
     at_angles = np.stack([np.zeros(count), np.zeros(count), theta, np.zeros(count)], axis=1)
     density = MEASURES[measure].density(at_angles)

@@ -1,7 +1,7 @@
-"""What the forms of P_s share: a material's numbers first, then the value for a direction of light."""
+"""What the forms of P_s share: first a material's numbers, then the value for a light."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
@@ -10,7 +10,7 @@ from jax import Array
 
 from fitting.form import Form, Proofs, Stage
 from integrals import PS
-from integrals.reference import Axis
+from integrals.reference import Axis, restricted
 from quantities.fuzz.lights import cosines_of_light
 from shading import direction_cosines
 
@@ -50,7 +50,7 @@ def material_form(
     `material` maps coefficients, α and θf to the material's numbers m; `along` maps m, u·n and u·t
     to the value. Proofs take the cosine of the azimuth for an axis in place of the azimuth.
     """
-    axes = (replace(PS.axes[0], lower=least_alpha, open_below=False), *PS.axes[1:])
+    axes = restricted(PS.axes, alpha=(least_alpha, 1.0))
 
     def value(c, alpha, theta_f, theta_u, cos_phi):
         cosines = _bounded_cosines(theta_f, theta_u, cos_phi)

@@ -1,18 +1,17 @@
 """P_s: part of the scattered light that goes down to the base."""
 
-from dataclasses import replace
-
 import numpy as np
 
 import integrals
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
+from integrals.reference import restricted
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.fuzz.lights import cosines_at
 from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
 from quantities.fuzz.supplement import RATIONAL_PS
-from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, Problem
 
 _COSINE = (0.0, 1.0)
 # The least α whose error in float32 is stated.
@@ -73,10 +72,7 @@ PS = Problem(
     closed_form=fraction_at,
     exact_code=ExactCode(
         "closed form, root by Newton's steps",
-        (
-            replace(integrals.PS.axes[0], lower=LEAST_EXACT_ALPHA, open_below=False),
-            *integrals.PS.axes[1:],
-        ),
+        restricted(integrals.PS.axes, alpha=(LEAST_EXACT_ALPHA, 1.0)),
         exact_functions,
         lambda points: (np.stack([*cosines_at(points), points[:, 0]], axis=1),),
         "NdotU = u·n, TdotU = u·t, NdotT = n·t, all unit vectors; t and −t are one fibre: turn t "
@@ -85,12 +81,30 @@ PS = Problem(
     ),
     plot=PlotHints(
         {
-            "alpha": AxisHint("α", 0.05, 1.0, 0.35),
-            "theta_f": AxisHint("$θ_f$ / °", 0.0, np.pi / 2, np.pi / 4, factor=180 / np.pi),
-            "theta_u": AxisHint("$θ_u$ / °", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi),
-            "phi": AxisHint("φ / °", -np.pi, np.pi, np.pi / 2, factor=180 / np.pi),
+            "alpha": AxisHint("α", 0.15, 1.0, 0.35, explored=(0.05, 1.0)),
+            "theta_f": AxisHint(
+                "fibre's angle $θ_f$",
+                0.1,
+                np.pi / 2,
+                np.pi / 4,
+                explored=(0.0, np.pi / 2),
+                short_label="$θ_f$",
+                factor=180 / np.pi,
+                unit="°",
+            ),
+            "theta_u": AxisHint("$θ_u$", 0.0, np.pi / 2, np.pi / 6, factor=180 / np.pi, unit="°"),
+            "phi": AxisHint("φ", -np.pi, np.pi, np.pi / 2, factor=180 / np.pi, unit="°"),
         },
+        values=(0.0, 1.0),
+        value_label="fraction scattered to the base, $P_s$",
         cost_label="operations a direction",
+        against="theta_u",
+        hemisphere=HemisphereHint(
+            "theta_u",
+            "phi",
+            "The hemisphere of lights seen from above. The fibre leans to the right; the ring is "
+            "the light.",
+        ),
     ),
     topic="fuzz",
 )

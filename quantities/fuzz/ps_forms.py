@@ -135,7 +135,7 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
 
     def margins(m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
         """Return m₂, t + m₃c, and a lower bound of (t/c) times the numerator of P̃_s."""
-        # notation: docs/range.md; q = 1 − κb². t ≥ 0 always holds, but an interval does not show it.
+        # notation: docs/range.md; q = 1 − κb². t ≥ 0 holds, but intervals do not show it.
         c, a = cos_un, cos_ut
         sigma, h, root = _parts(m, c, a)
         t, slope = jnp.maximum(h + root, 0), _slope(m, c)
@@ -167,9 +167,9 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
 def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     """Return the closed form with the cubic's root λ from a quadratic and `steps` of Newton's.
 
-    P̃_s = 1 − √((λ + c)(λ + E/σ²)) / D, E = α²c, D = ((λ + T)² − S²)/λ + 2 (λ + T + E). The quadratic
-    has one of the cubic's factors, λ + S + T, frozen as g = S + max(S, T), without coefficients; or,
-    where `degree` ≥ 0, as S + √(S² + T² + m₅c), m₅ a polynomial of that degree.
+    P̃_s = 1 − √((λ + c)(λ + E/σ²)) / D, E = α²c, D = ((λ + T)² − S²)/λ + 2 (λ + T + E). In the
+    quadratic the cubic's factor λ + S + T is replaced by g = S + max(S, T), without coefficients.
+    If `degree` ≥ 0, g = S + √(S² + T² + m₅c) instead, m₅ a polynomial of that degree.
     """
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:

@@ -40,6 +40,12 @@ Q = Problem(
         lambda points: (points,),
         "density is thickness over mean free path",
     ),
-    plot=PlotHints({"density": AxisHint("density $d$", 0.0, 1.0, 0.2)}, largest_error=0.01),
+    plot=PlotHints(
+        {"density": AxisHint("density $d$", 0.0, 0.5, 0.2, explored=(0.001, 1.0))},
+        values=(0.0, 1.0),
+        value_label="$Q$, mean penetration",
+        exact_label="exact, $2E_3(d)$",
+        largest_error=0.01,
+    ),
     topic="fuzz",
 )

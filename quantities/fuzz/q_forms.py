@@ -6,7 +6,6 @@ Q = 1 − 2d − d² ln d + O(d²): near d = 0 neither polynomials nor rational 
 import functools
 import itertools
 from collections.abc import Iterator
-from dataclasses import replace
 
 import jax.numpy as jnp
 from jax import Array
@@ -14,9 +13,10 @@ from jax import Array
 from fitting.form import Form, Proofs, Stage
 from fitting.shapes.poles import least_offset, pole_names, pole_starts, poles_value
 from integrals import Q
+from integrals.reference import restricted
 from shading.types import Scalar
 
-AXES = (replace(Q.axes[0], upper=0.5),)
+AXES = restricted(Q.axes, density=(0.0, 0.5))
 # ln d is taken of at least this; its factor d² is far below rounding there.
 LEAST_DENSITY = 1e-30
 

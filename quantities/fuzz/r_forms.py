@@ -3,7 +3,6 @@
 import functools
 import itertools
 from collections.abc import Iterator
-from dataclasses import replace
 
 import jax.numpy as jnp
 from jax import Array
@@ -12,13 +11,14 @@ from fitting.form import Form, Stage
 from fitting.greedy_monomials import greedy_sets
 from fitting.shapes.monomials import Exponents, horner
 from integrals import R
+from integrals.reference import restricted
 from shading.types import Scalar
 
-# A variable's symbol, and the variable as a function of α.
+# A variable's symbol, and the variable as a function of α and b = 1 − α.
 VARIABLES = {
-    "1-alpha": ("1 − α", lambda alpha: 1 - alpha),
-    "1-alpha^2": ("1 − α²", lambda alpha: 1 - alpha * alpha),
-    "(1-alpha)/(1+alpha)": ("(1 − α)/(1 + α)", lambda alpha: (1 - alpha) / (1 + alpha)),
+    "1-alpha": ("1 − α", lambda alpha, b: b),
+    "1-alpha^2": ("1 − α²", lambda alpha, b: 1 - alpha * alpha),
+    "(1-alpha)/(1+alpha)": ("(1 − α)/(1 + α)", lambda alpha, b: b / (1 + alpha)),
 }
 # Monomials zⁱyʲ that the numerator and the denominator of a search choose from.
 NUMERATOR = tuple((i, j) for i in range(4) for j in range(4))
@@ -38,15 +38,15 @@ def monomial_r(
     symbol, z_of = VARIABLES[variable]
     split = len(numerator)
 
-    def denominator_at(c, alpha: Scalar, theta_f: Scalar) -> Array:
-        z, cosine = z_of(jnp.asarray(alpha)), jnp.cos(theta_f)
-        below = zip(denominator, c[split:], strict=True)
-        return horner({(0, 0): 1.0, **dict(below)}, z, cosine * cosine)
-
     def value(c, alpha: Scalar, theta_f: Scalar) -> Array:
-        z, cosine = z_of(jnp.asarray(alpha)), jnp.cos(theta_f)
-        above = zip(numerator, c[:split], strict=True)
-        return 0.5 + z * horner(dict(above), z, cosine * cosine) / denominator_at(c, alpha, theta_f)
+        # notation: b = 1 − α and g = cos θf, as in the supplement's listings.
+        alpha = jnp.asarray(alpha)
+        b = 1 - alpha
+        g = jnp.cos(theta_f)
+        z, y = z_of(alpha, b), g * g
+        above = dict(zip(numerator, c[:split], strict=True))
+        below = {(0, 0): 1.0, **dict(zip(denominator, c[split:], strict=True))}
+        return 0.5 + z * horner(above, z, y) / horner(below, z, y)
 
     sets = {"N": numerator, "D": denominator}
     return Form(
@@ -56,7 +56,7 @@ def monomial_r(
             f"{len(numerator)} and 1 + {len(denominator)} monomials z^i y^j"
         ),
         reference=R,
-        axes=(replace(R.axes[0], lower=least_alpha, open_below=False), R.axes[1]),
+        axes=restricted(R.axes, alpha=(least_alpha, 1.0)),
         coefficient_names=[
             f"{part}: z^{i} y^{j}" for part, exponents in sets.items() for i, j in exponents
         ],

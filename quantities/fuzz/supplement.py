@@ -1,11 +1,10 @@
 """The forms of the supplement to "Samurai Shading in Ghost of Tsushima": Eq. (1) to (5)."""
 
-from dataclasses import replace
-
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
-from fitting.form import Form, Proofs, Stage
+from fitting.form import Form, Proofs, Stage, unguarded
 from fitting.points.grids import gauss_grid, trapezoid_grid
 from fitting.shapes.quotients import Quotients
 from fitting.solvers.on_grid import MARQUARDT, OnGrid
@@ -13,6 +12,7 @@ from fitting.solvers.quotients import fit_quotient_on_grid
 from fitting.solvers.separable import Separable
 from integrals import PS, G, Q, R
 from integrals.fuzz.ps import scattered_fraction
+from integrals.reference import restricted
 from quantities.fuzz.lights import cosines_of_light, light_directions
 from shading.types import Scalar
 
@@ -62,12 +62,7 @@ RATIONAL_PS = Form(
     name="rational-ps",
     equation="Eq. (1) and (2)",
     reference=PS,
-    axes=(
-        replace(PS.axes[0], lower=0.15, open_below=False),
-        replace(PS.axes[1], lower=0.1),
-        PS.axes[2],
-        PS.axes[3],
-    ),
+    axes=restricted(PS.axes, alpha=(0.15, 1.0), theta_f=(0.1, np.pi / 2)),
     coefficient_names=[[f"c{i}: {name}" for name in _ROW_NAMES] for i in range(6)],
     stages=(
         Stage(
@@ -87,7 +82,7 @@ RATIONAL_PS = Form(
     ),
     solver=Separable(
         PS_ROWS,
-        rule=lambda measure: light_directions(PS.axes[2], LIGHTS_PER_ANGLE, measure),
+        rule=lambda measure: light_directions(LIGHTS_PER_ANGLE, measure),
         exact=lambda alpha, theta_f, cos_un, cos_ut: scattered_fraction(
             cos_un, cos_ut, jnp.cos(theta_f), alpha
         ),
@@ -104,12 +99,10 @@ RATIONAL_G = Form(
     name="rational-g",
     equation="Eq. (3)",
     reference=G,
-    axes=(
-        replace(G.axes[0], lower=0.001, upper=0.5),
-        replace(G.axes[1], lower=0.001),
-    ),
+    axes=restricted(G.axes, density=(0.001, 0.5), cos_v=(0.001, 1.0)),
     coefficient_names=["c0: dν", "c1: dν²", "c2: ν", "c3: ν³"],
     stages=(Stage(_rational_g),),
+    proofs=Proofs(positive=unguarded),
     solver=OnGrid(gauss_grid),
 )
 
@@ -123,7 +116,7 @@ QUADRATIC_Q = Form(
     name="quadratic-q",
     equation="Eq. (4)",
     reference=Q,
-    axes=(replace(Q.axes[0], upper=0.5),),
+    axes=restricted(Q.axes, density=(0.0, 0.5)),
     coefficient_names=["c0: d", "c1: d²"],
     stages=(Stage(_quadratic_q),),
     solver=OnGrid(gauss_grid),
@@ -133,7 +126,7 @@ RATIONAL_R = Form(
     name="rational-r",
     equation="Eq. (5)",
     reference=R,
-    axes=(replace(R.axes[0], lower=0.15, open_below=False), R.axes[1]),
+    axes=restricted(R.axes, alpha=(0.15, 1.0)),
     coefficient_names=["t", *(f"p {x}" for x in TERMS), *(f"q {x}" for x in TERMS[:_BELOW_R])],
     stages=(Stage(R_QUOTIENT),),
     proofs=Proofs(positive=R_QUOTIENT.positive),

@@ -28,6 +28,10 @@ VELVET = Problem(
     ),
     closed_form=normalisation,
     exact_code=ExactCode("closed form", AXES, exact_functions, lambda points: (points,), _REMARK),
-    plot=PlotHints({"asymmetry": AxisHint("asymmetry $k$", -0.95, 0.0, -0.5)}, largest_error=1e-3),
+    plot=PlotHints(
+        {"asymmetry": AxisHint("asymmetry $k$", -0.95, 0.0, -0.5)},
+        values=(0.0, 1.0),
+        largest_error=1e-3,
+    ),
     topic="fuzz",
 )

@@ -5,8 +5,6 @@ B̃ = 1 + x (c₀ + c₁x + c₂(1 − s)) of B. Both the loss of r and the boun
 coefficients: the fit is a linear program.
 """
 
-from dataclasses import replace
-
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -19,6 +17,7 @@ from fitting.points.grids import Grid, trapezoid_grid
 from fitting.solvers.on_grid import OnGrid
 from integrals import VELVET
 from integrals.fuzz.velvet import normalisation, series_coefficients
+from integrals.reference import restricted
 from programs.bounding.denominators import DenominatorBound, bound_below
 from programs.functions import Function, Parameter
 from programs.tracing.tracer import trace
@@ -32,7 +31,7 @@ _LIFT_NODES = 4097
 _SERIES_LIMIT = float(np.arcsin(0.25))
 _SERIES_TERMS = 24
 
-AXES = (replace(VELVET.axes[0], lower=-0.95, open_below=False),)
+AXES = restricted(VELVET.axes, asymmetry=(-0.95, 0.0))
 
 _norms = jax.jit(jax.vmap(normalisation))
 
@@ -98,7 +97,7 @@ def _terms(x: np.ndarray) -> np.ndarray:
 
 
 def _room(fitted: FittedForm, rest, phi):
-    """Give (B̃ − B)/x at x = sin φ, `rest` giving (B − 1)/x."""
+    """Return (B̃ − B)/x at x = sin φ; `rest` is a function that returns (B − 1)/x."""
     c, x, s = fitted.constants, jnp.sin(phi), jnp.cos(phi)
     return c[0] + c[1] * x + c[2] * (1 - s) - rest(phi, x, s)
 
@@ -117,7 +116,7 @@ def _near_zero(_, x, s):
 
 
 def _beyond(phi, x, s):
-    """Give (B − 1)/x from B = (2/(πx²)) ((π + 2φ)(2x² − 1) + 2xs + πs³)."""
+    """Return (B − 1)/x from B = (2/(πx²)) ((π + 2φ)(2x² − 1) + 2xs + πs³)."""
     a = np.pi + 2 * phi
     b = (2 / np.pi) * (a * (2 * x * x - 1) + 2 * x * s + np.pi * s * s * s) / (x * x)
     return (b - 1) / x

@@ -1,20 +1,26 @@
-"""The energy of the fuzz BRDF, its ambient model and its deferred version in uniform light."""
+"""The largest radiances of the fuzz BRDF, its ambient model and deferred version in uniform light.
+
+In uniform light of radiance 1, a surface that creates no energy has no radiance above 1.
+"""
 
 import jax
 import numpy as np
 
 from integrals.rules.hemisphere import hemisphere_rule
 from integrals.rules.interval import gauss_legendre
-from shadefit.ambient.errors import COSINES, RULE, Radiances, place_of
+from shadefit.ambient.radiances import COSINES, HEMISPHERE_RULE, Radiances, named_place
 from shading import deferred_radiance, direction
 from shading.fuzz.deferred import WRAP
 
+# Albedos of the base; the deferred version's fibres have five times the albedo.
+ALBEDOS = (0.1, 0.2, 0.4, 0.6)
 
-def energy(found: Radiances) -> list[dict]:
-    """Give the largest radiance towards any view in uniform light of radiance one: no more is due.
 
-    Of layer and base, exact and by the model with each set of functions; and of the deferred
-    version by albedo, whose fibres have five times it.
+def largest_radiances(found: Radiances) -> list[dict]:
+    """Return a row with the largest radiance in uniform light and its place for each method.
+
+    The methods are the BRDF itself and the ambient model with each set of functions (layer and base
+    together), and the deferred version with each of `ALBEDOS`.
     """
     column = found.lights.index("uniform")
     rows = []
@@ -22,9 +28,9 @@ def energy(found: Radiances) -> list[dict]:
         total = parts["layer"][:, column] + parts["base"][:, column]
         worst = int(np.argmax(total))
         label = name if parts is found.exact else f"ambient model, {name} functions"
-        where = place_of(found.points[worst])
+        where = named_place(found.points[worst])
         rows.append({"what": label, "largest": float(total[worst]), "where": where})
-    for albedo in (0.1, 0.2, 0.4, 0.6):
+    for albedo in ALBEDOS:
         cosines = np.array(COSINES)
         seen = np.array([deferred_in_uniform_light(albedo, float(c)) for c in cosines])
         worst = int(np.argmax(seen))
@@ -36,11 +42,11 @@ def energy(found: Radiances) -> list[dict]:
 
 
 def deferred_in_uniform_light(albedo: float, cos_v: float) -> float:
-    """Give the radiance of the deferred version at fuzziness one in uniform light of radiance one.
+    """Return the radiance of the deferred version at fuzziness 1 in uniform light of radiance 1.
 
-    Wrapped light comes from below the horizon as well.
+    Wrapped lighting also counts light from a little below the horizon, down to a cosine of −WRAP.
     """
-    above, weights = hemisphere_rule(**RULE)
+    above, weights = hemisphere_rule(**HEMISPHERE_RULE)
     below, below_weights = gauss_legendre(16, -WRAP, 0.0)
     phi, sine = np.arange(64) * 2 * np.pi / 64, np.sqrt(1 - below**2)
     under = np.stack(

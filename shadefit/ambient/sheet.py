@@ -1,4 +1,4 @@
-"""The picture of `shadefit ambient`: the layer seen from everywhere, exact and by the model."""
+"""The picture that `shadefit ambient` draws: the layer from all views, exact and by the model."""
 
 from typing import Any
 
@@ -8,24 +8,27 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize, PowerNorm
 from matplotlib.figure import Figure
 
-from shadefit.ambient.errors import Radiances, radiances
+from shadefit.ambient.radiances import Radiances, radiances
 from shadefit.figures.style import ERRORS, FIBRE, VALUES, render
 from shading import roughness_from_spread
 
+# The material; the tilt is in degrees.
 SPREAD, TILT, DENSITY = 0.2, 45.0, 0.2
 LIGHTS = ("uniform", "from above", "where fibres point", "from the side", "against fibres")
 MODELS = {"exact": "model, exact functions", "published": "model, published tables"}
-# Views: sines of the polar angle up to a cosine of 0.1, and azimuths over the circle: the light
-# from the side has no mirror in it.
+# The views: sines of the polar angle, from the normal to a cosine of 0.1, and azimuths over the
+# whole circle, because the radiance in light from the side has no mirror symmetry.
 _SINES = np.sin(np.linspace(0, np.arccos(0.1), 17))
 _AZIMUTHS = np.arange(36) * np.pi / 18
-# As many chords as this look round; between the azimuths stands the trigonometric interpolation.
+# The disk of views is drawn with this many azimuths, between which it looks round. Radiances are
+# computed at fewer azimuths and interpolated.
 _CHORDS = 180
+# Width and height of one disk on the sheet.
 _INCHES = 1.75
 
 
 def draw_ambient() -> bytes:
-    """Draw the layer's radiance over the disk of views, one row a light; returns a PNG."""
+    """Return a PNG with a row for each light: the layer's radiance and errors over all views."""
     sine, azimuth = (a.ravel() for a in np.meshgrid(_SINES, _AZIMUTHS, indexing="ij"))
     material = float(roughness_from_spread(SPREAD)), np.radians(TILT), DENSITY
     at = np.column_stack([np.tile(material, (len(sine), 1)), np.arcsin(sine), azimuth])
@@ -51,7 +54,7 @@ def _draw(found: Radiances) -> Figure:
         for axis, radiance in zip(row[3:], models, strict=True):
             error = _disk(axis, (radiance - exact) / mean, ERRORS, Normalize(-1, 1))
         row[0].set_ylabel(light)
-    # Fibres lean to the right, in the middle of the disk's right half.
+    # The line from the centre shows the direction in which the fibres lean.
     axes[0, 0].plot([0, 0.5], [0, 0], color=FIBRE, marker="o", markevery=[1], markersize=3)
     for axis, title in zip(axes[0], columns, strict=True):
         axis.set_title(title.replace("model, ", "model,\n"))
@@ -68,25 +71,25 @@ def _draw(found: Radiances) -> Figure:
 
 
 def _disk(axis: Axes, values: np.ndarray, colours: str, norm: Normalize) -> QuadMesh:
-    """Colour the disk of views."""
+    """Draw values of all views on a disk: the radius is the sine of the polar angle."""
     around = np.linspace(0, 2 * np.pi, _CHORDS + 1)
-    whole = periodic(values.reshape(len(_SINES), len(_AZIMUTHS)), _CHORDS)
+    whole = interpolate_period(values.reshape(len(_SINES), len(_AZIMUTHS)), _CHORDS)
     x, y = np.outer(_SINES, np.cos(around)), np.outer(_SINES, np.sin(around))
-    # Room for the rim, which would be cut flat by the edges of the axes.
+    # Limits of ±1 would cut the rim of the disk.
     axis.set(xticks=[], yticks=[], aspect="equal", xlim=(-1.02, 1.02), ylim=(-1.02, 1.02))
     axis.spines[:].set_visible(False)
     return axis.pcolormesh(x, y, whole, shading="gouraud", cmap=colours, norm=norm)
 
 
-def periodic(values: np.ndarray, count: int) -> np.ndarray:
-    """Interpolate rows (m, n), one period each, at `count` equal steps and the end: (m, count + 1).
+def interpolate_period(values: np.ndarray, count: int) -> np.ndarray:
+    """Interpolate periodic rows (m, n) at `count` ≥ n equal steps, by a trigonometric polynomial.
 
-    By the trigonometric polynomial through the values; `count` is at least n.
+    The result (m, count + 1) ends with the first value again, to close the circle.
     """
     n = values.shape[1]
     spectrum = np.fft.rfft(values, axis=1)
     if n % 2 == 0:
-        # The highest frequency stands for two, of which the longer spectrum keeps one.
+        # The last element is the sum of the frequencies ±n/2, which the longer spectrum separates.
         spectrum[:, -1] /= 2
     finer = np.fft.irfft(spectrum, count, axis=1) * (count / n)
     return np.concatenate([finer, finer[:, :1]], axis=1)

@@ -1,4 +1,4 @@
-"""`shadefit ambient`: what the ambient model's approximations cost, as tables and a picture."""
+"""`shadefit ambient`: the errors of the ambient model, as tables and a picture."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +13,69 @@ def ambient(
     json: Json = False,
 ) -> None:
     """Measure the ambient model against the integral of the whole BRDF, and its energy."""
-    from shadefit.ambient.command import run
-
     run(out, json)
+
+
+def run(out: Path, json: bool) -> None:
+    """Measure the ambient model, write `ambient.png`, and print tables or one JSON object."""
+    from coefficients.files import require_writable, write_whole_bytes
+    from shadefit.ambient.energy import largest_radiances
+    from shadefit.ambient.errors import errors_with_phase_integral, model_errors
+    from shadefit.ambient.radiances import materials_and_views, radiances
+    from shadefit.ambient.sheet import draw_ambient
+    from shadefit.terminal import print_json, stages
+
+    require_writable(out)
+    path = out / "ambient.png"
+    with stages() as progress:
+        task = progress.add_task("exact radiances by quadrature")
+        found = radiances(materials_and_views())
+        progress.update(task, description="picture")
+        write_whole_bytes(path, draw_ambient())
+    rows, with_integral = model_errors(found), errors_with_phase_integral(found)
+    largest = largest_radiances(found)
+    if json:
+        record = {"points": len(found.points), "errors": rows, "energy": largest}
+        print_json({**record, "rms_without_symmetry": with_integral, "file": str(path)})
+        return
+    _print_errors(rows, with_integral, list(found.models), len(found.points))
+    _print_energy(largest, path)
+
+
+def _print_errors(
+    rows: list[dict], with_integral: dict[str, float], names: list[str], count: int
+) -> None:
+    from shadefit.terminal import place, print_table
+
+    print_table(
+        f"Error of the ambient model over {count:,} materials and views, relative to the mean",
+        [
+            *("part, light", "mean", *(f"rms, {name}" for name in names), "rms, lit p"),
+            *("bias", "worst", "at"),
+        ],
+        [
+            [
+                f"{row['part']}, {row['light']}",
+                f"{row['mean']:.4f}",
+                *(f"{row['rms'][name]:.2%}" for name in names),
+                f"{with_integral[row['light']]:.2%}" if row["part"] == "layer" else "—",
+                f"{row['bias']['exact']:+.2%}",
+                f"{row['worst']:+.1%}",
+                place(row["where"]),
+            ]
+            for row in rows
+        ],
+        "White fibres, white base. rms by whose G, Q, R and P_s the model takes; lit p: exact "
+        "ones, and the integral of p(u, v) over lights for 1 − P_s(v). Bias, worst: exact ones.",
+    )
+
+
+def _print_energy(rows: list[dict], path: Path) -> None:
+    from shadefit.terminal import place, print_table
+
+    print_table(
+        "Largest radiance in uniform light of radiance one",
+        ["", "largest", "at"],
+        [[row["what"], f"{row['largest']:.4f}", place(row["where"])] for row in rows],
+        f"Of the same points; {path}.",
+    )

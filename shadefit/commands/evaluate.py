@@ -17,12 +17,17 @@ if TYPE_CHECKING:
 
 MAX_SAMPLES = 1 << 24
 # The options of axes depend on the quantity: they are read by `axis_values`.
-SETTINGS = {"ignore_unknown_options": True, "allow_extra_args": True}
+SETTINGS = {"ignore_unknown_options": True}
 
 
 def evaluate(
-    context: typer.Context,
     integral: Annotated[str, typer.Argument(help="ps, g, q, r or velvet.", metavar="INTEGRAL")],
+    arguments: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Each argument of the integral as an option.", metavar="--NAME VALUE ..."
+        ),
+    ] = None,
     table: Annotated[
         list[str] | None,
         typer.Option(
@@ -43,7 +48,7 @@ def evaluate(
     --density and --cos-v of g; --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
     Angles are radians unless 'deg' follows: 45deg, 0.785, 0.785rad.
     """
-    run(integral, context.args, table or [], samples, sequence, seed, json)
+    run(integral, arguments or [], table or [], samples, sequence, seed, json)
 
 
 def run(
@@ -105,8 +110,8 @@ def run(
 def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:
     """Read the options of a quantity's axes, such as ['--alpha', '0.35', '--phi=90deg'].
 
-    Returns the values by the axes' names, in order. Raises ValueError for an option that is missing,
-    that is none of the quantity's, or whose value is outside the axis's domain.
+    Returns the values by the axes' names, in order. Raises ValueError for an option that is missing
+    or not the quantity's, and for a value outside the domain of its axis.
     """
     flags = {flag_of(name): axis for axis in owner.axes for name in (axis.name, axis.alias) if name}
     wanted = ", ".join(flag_of(axis.name) for axis in owner.axes)

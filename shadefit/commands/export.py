@@ -5,7 +5,6 @@ from typing import Annotated, Literal
 
 import typer
 
-from shadefit.commands.options import Precision
 from shadefit.completion import complete_language, complete_shader
 
 
@@ -29,7 +28,8 @@ def export(
         Path | None, typer.Option("-o", "--output", help="File; by default standard output.")
     ] = None,
     precision: Annotated[
-        Precision | None, typer.Option(help="By default float (JavaScript: double).")
+        str | None,
+        typer.Option(help="half, float or double; by default float (JavaScript: double)."),
     ] = None,
     name: Annotated[
         str | None, typer.Option(help="Name of the function; by default the paper's.")

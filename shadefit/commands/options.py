@@ -2,9 +2,11 @@
 
 import math
 import re
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from fitting import goal
 
 if TYPE_CHECKING:
     from integrals.reference import Axis
@@ -13,24 +15,22 @@ _ANGLE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|rad
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")]
 
-# A goal: its words are those of fitting/goal.py, which is not imported here, for it imports JAX.
 Norm = Annotated[
-    Literal["l2", "linf"] | None,
+    goal.Norm | None,
     typer.Option(help="Least squares or least largest error; by default the table's own."),
 ]
 Side = Annotated[
-    Literal["both", "below", "above"] | None,
+    goal.Side | None,
     typer.Option(help="With linf, values never above (or below) the exact ones."),
 ]
 Rounding = Annotated[
-    Literal["none", "float32", "float16"] | None,
+    goal.Rounding | None,
     typer.Option(help="Precision that coefficients are rounded to, the others refitted in turn."),
 ]
 Relative = Annotated[bool, typer.Option("--relative", help="Make relative errors small.")]
 Bounded = Annotated[
     bool, typer.Option("--bounded", help="With linf, values between 0 and 1, and proven to be.")
 ]
-Precision = Literal["half", "float", "double"]
 
 
 def goal_fields(norm, side, rounding, relative: bool, bounded: bool) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -41,8 +41,11 @@ def refit(
     ] = None,
     grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129, for the paper's forms.")] = 65,
     weight: Annotated[
-        Literal["uniform", "solid-angle", "cosine"],
-        typer.Option(help="Measure of light directions in the fit of ps; the others have none."),
+        str,
+        typer.Option(
+            help="Measure of light directions in the fit of ps: uniform, solid-angle or cosine; "
+            "the others have none."
+        ),
     ] = "uniform",
     norm: Norm = None,
     side: Side = None,
@@ -75,6 +78,7 @@ def run(
     from coefficients.table import serialise
     from shadefit.terminal import print_json, print_table, stages
 
+    _require_measure(weight)
     chosen = selection(names)
     for owner in [each for each in chosen if given and _has_own_goal(each)]:
         if owner.name in names:
@@ -126,6 +130,16 @@ def selection(names: list[str]) -> "list[Problem | Entry]":
     whole = not names or ALL in names
     owners = [owner for name, owner in every.items() if whole or name in names]
     return [*owners, *(resolve(name) for name in best if name in names)]
+
+
+def _require_measure(weight: str) -> None:
+    """Raise ValueError for a measure that no quantity has."""
+    from quantities import problems
+
+    every = (owner.reference.sampling.measures for owner in problems().values())
+    known = dict.fromkeys(name for measures in every for name in measures)
+    if weight not in known:
+        raise ValueError(f"weight = {weight!r}: allowed are {', '.join(known)}")
 
 
 def _has_own_goal(each: "Problem | Entry") -> bool:

@@ -1,11 +1,15 @@
 """`shadefit render`: a scene with exact functions and with tables, side by side, as PNG and EXR."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from shadefit.commands.options import Json, angle
+from shadefit.commands.options import Json, angle, checked
+
+if TYPE_CHECKING:
+    from shadefit.render.scenes import Scene
+    from shadefit.render.settings import Settings
 
 
 def render(
@@ -38,10 +42,97 @@ def render(
     json: Json = False,
 ) -> None:
     """Render velvet with exact functions and with tables, side by side: render.png, render.exr."""
-    from shadefit.render.compare import run
     from shadefit.render.settings import Settings
 
     settings = Settings(
         density, spread, tilt, fiber, base, sun, sun_height, sun_azimuth, sky, fibers, size
     )
     run(scenes or [], settings, out, sweep, json)
+
+
+def run(names: list[str], settings: "Settings", out: Path, sweep: bool, json: bool) -> None:
+    """Render scenes, by default all, and write `render.png` and `render.exr`, or `sweep.png`.
+
+    Raises ValueError for a setting outside its domain, an unknown scene, and several scenes with
+    `sweep`; no file is written then.
+    """
+    from coefficients.files import require_writable
+    from shadefit.render.scenes import SCENES
+
+    check_settings(settings)
+    unknown = [name for name in names if name not in SCENES]
+    if unknown:
+        raise ValueError(f"scene is {unknown[0]!r}; allowed: {', '.join(SCENES)}")
+    require_writable(out)
+    if sweep:
+        if len(names) > 1:
+            raise ValueError(f"scenes are {', '.join(names)}; allowed with --sweep: one")
+        _write_sweep(SCENES[names[0] if names else "cloth"], settings, out, json)
+    else:
+        _write_comparisons([SCENES[name] for name in names or SCENES], settings, out, json)
+
+
+def check_settings(settings: "Settings") -> None:
+    """Raise ValueError for the first setting that is outside its domain or cannot be read."""
+    from math import pi
+
+    from integrals import PS, Axis
+
+    domains = (
+        Axis("density", "d", "1", 0.0, 0.5, "density of the layer"),
+        Axis("spread", "", "1", 0.0, 1.0, "spread of the lobe", open_below=True),
+        Axis("tilt", "θf", "rad", 0.0, PS.axes[1].upper, "polar angle of the fibres"),
+        Axis("sun_height", "", "rad", 0.0, pi / 2, "height of the sun above the horizon"),
+        Axis("sun_azimuth", "", "rad", -2 * pi, 2 * pi, "the sun's azimuth from the right"),
+        Axis("sun", "", "1", 0.0, 1e3, "irradiance of the sun"),
+        Axis("sky", "", "1", 0.0, 1e3, "radiance of the sky"),
+        Axis("size", "", "1", 16.0, 1024.0, "pixels an edge"),
+    )
+    for axis in domains:
+        checked(axis, float(getattr(settings, axis.name)))
+    # This reads the colours.
+    _ = settings.material
+
+
+def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) -> None:
+    from coefficients.files import write_whole_bytes
+    from shadefit.render.sweep import draw_sweep
+    from shadefit.terminal import print_json
+
+    path = out / "sweep.png"
+    write_whole_bytes(path, draw_sweep(scene, settings))
+    if json:
+        print_json({"files": [str(path)]})
+    else:
+        print(path)
+
+
+def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, json: bool) -> None:
+    from coefficients.files import write_whole_bytes
+    from shadefit.render.comparison import compare, exr_channels
+    from shadefit.render.exr import write_exr
+    from shadefit.render.sheet import draw_comparisons
+    from shadefit.terminal import print_json, print_table, stages
+
+    comparisons = []
+    with stages() as progress:
+        task = progress.add_task("")
+        for scene in scenes:
+            progress.update(task, description=scene.name)
+            comparisons.append(compare(scene, settings))
+    sheet, exr = out / "render.png", out / "render.exr"
+    write_whole_bytes(sheet, draw_comparisons(comparisons))
+    write_whole_bytes(exr, write_exr(exr_channels(comparisons)))
+    rows = [row for comparison in comparisons for row in comparison.statistics()]
+    if json:
+        print_json({"files": [str(sheet), str(exr)], "images": rows})
+        return
+    print_table(
+        "Luminance against the image with exact functions",
+        ["scene", "tables", "mean luminance", "rms difference", "largest"],
+        [
+            [row["scene"], row["tables"], *(f"{row[key]:.2e}" for key in ("mean", "rms", "max"))]
+            for row in rows
+        ],
+        f"{sheet}, and linear in {exr}.",
+    )

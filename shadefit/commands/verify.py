@@ -1,6 +1,6 @@
 """`shadefit verify`: exported code compiled, run and compared, a row a language."""
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,8 +20,8 @@ def verify(
         str, typer.Option(help="Language, or all.", autocompletion=complete_language)
     ] = "all",
     precision: Annotated[
-        Literal["half", "float", "double", "all"] | None,
-        typer.Option(help="By default float (JavaScript: double)."),
+        str | None,
+        typer.Option(help="half, float, double or all; by default float (JavaScript: double)."),
     ] = None,
     json: Json = False,
 ) -> int:

@@ -1,6 +1,9 @@
-"""Pictures: the supplement's figures, error maps, and cost against error, all from the tables."""
+"""Pictures: the supplement's figures, maps of errors, and cost against error.
 
-from shadefit.figures.gallery import PICTURES as PICTURES
-from shadefit.figures.gallery import Picture as Picture
-from shadefit.figures.gallery import run as run
+`gallery` lists the pictures; `fuzz_pictures` declares those of the fuzz BRDF. Any other quantity is
+drawn from its plot hints: by `curves` if it has one axis, by `maps` if it has two.
+"""
+
+from shadefit.figures.gallery import pictures as pictures
+from shadefit.figures.picture import Picture as Picture
 from shadefit.figures.style import render as render

@@ -1,4 +1,4 @@
-"""Pictures of a quantity of two arguments: surfaces, and maps of its tables' signed errors."""
+"""Pictures of a quantity of two axes: surfaces, and maps of the signed errors of its tables."""
 
 import numpy as np
 from matplotlib import colormaps
@@ -7,25 +7,18 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from integrals import Integral
+from quantities import Problem
 from shadefit.figures.style import ERRORS, VALUES, space
-from shadefit.figures.values import exact, exported
+from shadefit.figures.values import axis_hints, compared_values, hints_of, mesh, points_along
 
 
-def surfaces(
-    integral: Integral,
-    points: np.ndarray,
-    labels: tuple[str, str, str],
-    bounds: tuple[float, float],
-    azimuth: float,
-) -> Figure:
-    """Draw a quantity over two arguments as surfaces: exact, published and refitted.
-
-    Arguments: `points` (n, m, 2), its arguments; `labels` of both and of the quantity; `bounds`
-    of the quantity; `azimuth` in degrees, where the surface is seen from.
-    """
+def draw_surfaces(owner: Problem) -> Figure:
+    """Draw a quantity over its two axes, in their own units: exact, published and refitted."""
+    hints, pairs = hints_of(owner), axis_hints(owner)
+    points = mesh(*(points_along(hint, hints.surface_nodes) for _, hint in pairs))
+    values = compared_values(owner, points)
+    bounds = hints.values or _range(values["exact"])
     figure = Figure(figsize=(9.6, 3.6))
-    values = _columns(integral, points)
     for column, (title, heights) in enumerate(values.items()):
         place = (0.005 + 0.325 * column, 0.19, 0.31, 0.8)
         axes = space(figure, place)
@@ -40,49 +33,51 @@ def surfaces(
             linewidth=0,
             antialiased=False,
         ).set_rasterized(True)
-        # A few lines across it give the surface its shape.
+        # A few lines on the surface show its shape.
         axes.plot_wireframe(
             points[..., 0], points[..., 1], heights, rcount=7, ccount=7, color="#00000066", lw=0.5
         )
+        labels = [_own_label(hint.short_label or hint.label, axis.unit) for axis, hint in pairs]
         axes.set(xlabel=labels[0], ylabel=labels[1], zlim=bounds)
         for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
             axis.set_major_locator(MaxNLocator(4))
         axes.tick_params(pad=0)
-        axes.view_init(elev=25, azim=azimuth)
+        axes.view_init(elev=25, azim=hints.azimuth)
         axes.set_box_aspect((1, 1, 0.75), zoom=0.92)
         axes.set_title(title, y=0.97)
     bar = figure.add_axes((0.35, 0.13, 0.3, 0.025))
     scale = ScalarMappable(Normalize(*bounds), VALUES)
-    figure.colorbar(scale, cax=bar, orientation="horizontal", label=labels[2])
+    figure.colorbar(scale, cax=bar, orientation="horizontal", label=f"${owner.symbol}$")
     return figure
 
 
-def error_maps(
-    integral: Integral,
-    points: np.ndarray,
-    labels: tuple[str, str],
-    largest: float,
-    logarithmic: bool = False,
-    units: tuple[float, float] = (1.0, 1.0),
-) -> Figure:
-    """Map a quantity of two arguments, and the signed errors of the published and refitted table.
+def draw_errors(owner: Problem) -> Figure:
+    """Map a quantity of two axes, and the signed errors of its published and refitted table.
 
-    Arguments as for `surfaces`; errors beyond ±`largest` are shown as if they were that; `units`,
-    what the arguments are multiplied by to be shown.
+    Tables that are not kept are left out; without any, only the exact values are drawn.
     """
-    values = _columns(integral, points)
-    figure = Figure(figsize=(9.6, 3.5), layout="constrained")
-    grid = figure.subplots(1, 3, sharey=True)
+    hints, pairs = hints_of(owner), axis_hints(owner)
+    first, second = (hint for _, hint in pairs)
+    points = mesh(
+        *(points_along(h, hints.map_nodes, logarithmic=h.logarithmic) for h in (first, second))
+    )
+    values = compared_values(owner, points)
+    figure = Figure(figsize=(round(3.2 * len(values), 1), 3.5), layout="constrained")
+    grid = figure.subplots(1, len(values), sharey=True, squeeze=False)[0]
     truth = values.pop("exact")
-    x, y = points[..., 0] * units[0], points[..., 1] * units[1]
-    if logarithmic:
-        # Before anything is drawn: contours are labelled where there is room.
-        grid[0].set(xscale="log", yscale="log")
+    x, y = points[..., 0] * first.factor, points[..., 1] * second.factor
+    scales = {
+        f"{name}scale": "log" for name, hint in (("x", first), ("y", second)) if hint.logarithmic
+    }
+    # Scales come first: contours put their labels where there is room.
+    grid[0].set(**scales)
     shown = grid[0].pcolormesh(x, y, truth, cmap=VALUES, rasterized=True, shading="gouraud")
-    lines = grid[0].contour(x, y, truth, levels=8, colors="white", linewidths=0.7)
-    grid[0].clabel(lines, fontsize=7.5)
+    if np.ptp(truth) > 0:
+        lines = grid[0].contour(x, y, truth, levels=8, colors="white", linewidths=0.7)
+        grid[0].clabel(lines, fontsize=7.5)
     grid[0].set_title("exact")
     errors = shown
+    largest = hints.largest_error
     for axes, (label, column) in zip(grid[1:], values.items(), strict=True):
         signed = column - truth
         errors = axes.pcolormesh(
@@ -95,31 +90,32 @@ def error_maps(
             rasterized=True,
             shading="gouraud",
         )
-        axes.contour(x, y, signed, levels=[0], colors="#555555", linewidths=0.7)
+        if signed.min() < 0 < signed.max():
+            axes.contour(x, y, signed, levels=[0], colors="#555555", linewidths=0.7)
         worst = np.abs(signed).max()
         axes.set_title(f"{label} − exact (up to {worst:.2g} here)")
     for axes in grid:
-        axes.set(xlabel=labels[0])
-        if logarithmic:
-            axes.set(xscale="log", yscale="log")
-    grid[0].set_ylabel(labels[1])
-    figure.colorbar(shown, ax=grid[0], location="bottom", label=f"${integral.symbol}$", aspect=30)
-    figure.colorbar(
-        errors,
-        ax=grid[1:],
-        location="bottom",
-        label=f"error of ${integral.symbol}$",
-        extend="both",
-        aspect=50,
-        ticks=[-largest, -largest / 2, 0, largest / 2, largest],
-    )
+        axes.set(xlabel=first.shown_label)
+        axes.set(**scales)
+    grid[0].set_ylabel(second.shown_label)
+    figure.colorbar(shown, ax=grid[0], location="bottom", label=f"${owner.symbol}$", aspect=30)
+    if values:
+        figure.colorbar(
+            errors,
+            ax=grid[1:],
+            location="bottom",
+            label=f"error of ${owner.symbol}$",
+            extend="both",
+            aspect=50,
+            ticks=[-largest, -largest / 2, 0, largest / 2, largest],
+        )
     return figure
 
 
-def _columns(integral: Integral, points: np.ndarray) -> dict[str, np.ndarray]:
-    name = integral.name
-    return {
-        "exact": exact(integral, points),
-        "published": exported(f"published/{name}", points),
-        "refitted": exported(name, points),
-    }
+def _own_label(label: str, unit: str) -> str:
+    """Return the label of an axis whose values are shown in its own unit."""
+    return label if unit == "1" else f"{label} / {unit}"
+
+
+def _range(values: np.ndarray) -> tuple[float, float]:
+    return float(values.min()), float(values.max())

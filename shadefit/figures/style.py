@@ -1,4 +1,4 @@
-"""One look for every picture: colours that the colour-blind can tell apart, and print can too."""
+"""One style for every picture, whose colours can be told apart by the colour-blind and in print."""
 
 import io
 from collections.abc import Callable
@@ -13,7 +13,7 @@ FORMATS = ("png", "svg")
 VALUES = "viridis"
 ERRORS = "PuOr"
 FIBRE = "#d55e00"
-# Of the raster parts: all of a PNG, images and dense surfaces of an SVG.
+# Dots per inch of raster parts: all of a PNG, and images and dense surfaces in an SVG.
 _DPI = {"png": 120, "svg": 72}
 
 _STYLE: dict[Any, Any] = {
@@ -33,7 +33,7 @@ _STYLE: dict[Any, Any] = {
     "ytick.labelsize": 8,
 }
 
-# What a table is, in words; what follows is by the same names.
+# The kinds of tables (the keys below are the same), and what legends call them.
 KINDS = {
     "printed": "published, as printed",
     "published": "published",
@@ -41,8 +41,8 @@ KINDS = {
     "best": "other forms",
     "exact": "closed form, in float32",
 }
-# Colours of Okabe and Ito, a dash pattern and a marker, so that no two are told
-# apart by colour alone.
+# Each kind has a colour of Okabe and Ito, a dash pattern and a marker, so that no two kinds differ
+# by colour alone.
 COLOURS = {
     "exact": "#000000",
     "published": "#d55e00",
@@ -61,7 +61,7 @@ MARKERS = {"exact": "*", "published": "s", "printed": "X", "refitted": "o", "bes
 
 
 def render(draw: Callable[[], Figure]) -> dict[str, bytes]:
-    """Draw a figure in this style; returns its files by extension, the same bytes each time."""
+    """Draw a figure in this style. Returns its files by extension, the same bytes each time."""
     with mpl.rc_context(_STYLE):
         figure = draw()
         return {extension: _encode(figure, extension) for extension in FORMATS}
@@ -75,16 +75,19 @@ def _encode(figure: Figure, extension: str) -> bytes:
 
 
 def _smaller(png: io.BytesIO) -> bytes:
-    """Leave out the alpha channel, which is full everywhere, and compress as well as it goes."""
+    """Remove the alpha channel, which is opaque everywhere, and compress as far as possible."""
     buffer = io.BytesIO()
     Image.open(png).convert("RGB").save(buffer, "png", optimize=True)
     return buffer.getvalue()
 
 
 def space(figure: Figure, place: tuple[float, float, float, float]) -> Axes3D:
-    """Add axes in space at a place of the figure: left, bottom, width and height as fractions."""
+    """Add three-dimensional axes to a figure.
+
+    `place` is left, bottom, width and height as fractions of the figure.
+    """
     axes = figure.add_axes(place, projection="3d", computed_zorder=False)
     assert isinstance(axes, Axes3D)
-    # They reach beyond their place: none may cover its neighbour.
+    # The axes reach beyond their place. A transparent background does not cover the neighbours.
     axes.patch.set_visible(False)
     return axes

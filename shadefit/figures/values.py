@@ -1,71 +1,49 @@
-"""What is drawn: exact values and those of the exported functions, on grids of arguments."""
-
-from functools import lru_cache
+"""What is drawn of a quantity: its hints, and exact and exported values on grids of points."""
 
 import numpy as np
 
-from coefficients.catalogue import AS_PRINTED, load, names
-from coefficients.shaders import Shader, shader
-from fitting import exact_values
-from integrals import INTEGRALS, Integral
-from programs.program import evaluate
-from programs.tracing.tracer import trace
-
-_FOLDERS = {"published": "published", "best": "best", "": "refitted", "refit": "refitted"}
+from coefficients.catalogue import published, refitted
+from coefficients.exported_code import exported_values
+from integrals.reference import Axis, Reference
+from quantities import Problem
+from quantities.problem import AxisHint, PlotHints
 
 
-def quantities() -> list[str]:
-    """List the quantities that have a published table, which the others are held against."""
-    known = names()
-    return [name for name in INTEGRALS if f"published/{name}" in known]
+def hints_of(owner: Problem) -> PlotHints:
+    """Return how a quantity is drawn; without hints of its own, by defaults from its axes."""
+    return owner.plot or PlotHints()
 
 
-def tables_of(quantity: str) -> list[str]:
-    """List the named tables of a quantity: published as printed, published, then all others."""
-    found = [name for name in names() if of_quantity(name) == quantity]
-    order = {"printed": 0, "published": 1, "refitted": 2, "best": 3}
-    return sorted(found, key=lambda name: (order[kind_of(name)], name))
+def axis_hints(owner: Problem) -> list[tuple[Axis, AxisHint]]:
+    """Return each axis of a quantity with its hint."""
+    hints = hints_of(owner)
+    return [(axis, hints.axis(axis)) for axis in owner.axes]
 
 
-@lru_cache(maxsize=256)
-def of_quantity(name: str) -> str:
-    """Name the quantity that a table is of."""
-    return load(name).quantity
-
-
-def kind_of(name: str) -> str:
-    """Tell what a table is: 'printed', 'published', 'refitted' or 'best'."""
-    folder = name.rpartition("/")[0]
-    return "printed" if name.endswith(AS_PRINTED) else _FOLDERS[folder]
+def points_along(hint: AxisHint, count: int, *, logarithmic: bool = False) -> np.ndarray:
+    """Return `count` values along the range of an axis that pictures show, even or logarithmic."""
+    space = np.geomspace if logarithmic else np.linspace
+    return space(hint.lower, hint.upper, count)
 
 
 def mesh(*axes: np.ndarray) -> np.ndarray:
-    """Give the points (…, axes) of a tensor grid, one array of its shape an axis behind another."""
+    """Return the points (…, axes) of a tensor grid: its shape has the length of each axis."""
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
 
 
-def exact(integral: Integral, points: np.ndarray) -> np.ndarray:
-    """Evaluate an integral at points (…, axes): (…)."""
-    return exact_values(integral, points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
+def exact(reference: Reference, points: np.ndarray) -> np.ndarray:
+    """Evaluate the exact values at points (…, axes): (…)."""
+    return reference.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
 
 
-def exported(name: str, points: np.ndarray) -> np.ndarray:
-    """Evaluate a table's exported functions, clamps and all, in float64 at points (…, axes): (…).
+def compared_values(owner: Problem, points: np.ndarray) -> dict[str, np.ndarray]:
+    """Evaluate the exact values, and the published and refitted table as far as they are kept.
 
-    The functions are called one after the other, as a renderer calls them.
+    Tables are evaluated by their exported functions, with the clamps. Returns values (…) at points
+    (…, axes), by label.
     """
-    chosen, flat = _loaded(name), points.reshape(-1, points.shape[-1])
-    results = np.empty((len(flat), 0))
-    for program, own in zip(_programs(name), chosen.columns(flat), strict=True):
-        results = evaluate(program, np.concatenate([results, own], axis=1))
-    return results[:, 0].reshape(points.shape[:-1])
-
-
-@lru_cache(maxsize=256)
-def _loaded(name: str) -> Shader:
-    return shader(name, "double")
-
-
-@lru_cache(maxsize=256)
-def _programs(name: str):
-    return tuple(trace(function) for function in _loaded(name).functions)
+    values = {"exact": exact(owner.reference, points)}
+    for label, entry in (("published", published(owner)), ("refitted", refitted(owner))):
+        if entry is not None:
+            values[label] = exported_values(entry, points)
+    return values

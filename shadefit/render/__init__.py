@@ -1,1 +1,8 @@
-"""A small renderer that draws the fuzz BRDF with exact functions and with tables."""
+"""A small renderer of fuzz: the same scene with exact functions and with tables.
+
+* `scenes`: what a camera sees of a sphere or a cloth; `fibers`: where the fibres lean
+* `functions`: P_s, G, Q and R, exact or as a set of tables is exported
+* `settings`: what the user chooses; `shade`: the radiance of samples; `image`: their averages
+* `comparison`: images with tables against the exact one; `sheet` and `sweep`: pictures of them
+* `srgb` and `exr`: colours and image files
+"""

@@ -1,4 +1,4 @@
-"""Where the fibres of an image lean: all one way, crushed in patches, or as a map says."""
+"""The directions in which the fibres of an image lean."""
 
 import io
 from pathlib import Path
@@ -8,29 +8,36 @@ import numpy as np
 from shadefit.render.scenes import Hits
 
 EVEN, CRUSHED = "even", "crushed"
-# Waves that add up to the pattern of crushed velvet: how many, their lengths, the largest turn.
+# Crushed velvet is a sum of waves: their number, their shortest and longest length in units of the
+# scene, and the largest turn of a fibre in radians.
 _WAVES, _SHORTEST, _LONGEST, _TURN = 24, 0.3, 1.1, 1.3
 _MAX_BYTES = 64 << 20
-# Pixels an edge: a small file may say that it is of any size, and pixels take memory.
+# The largest width and height of a map in pixels. A small compressed file can declare a huge image,
+# which would fill the memory.
 _MAX_EDGE = 4096
 
 
 def azimuths(fibers: str, hits: Hits) -> np.ndarray:
-    """Give the turns (n,) of the fibres about the normal, in radians.
+    """Return the angles (n,) that turn the fibres about the normal, in radians.
 
-    `fibers` is 'even', 'crushed', or the path of a PNG whose red and green, 0 … 1 for −1 … 1, are
-    the direction's components along the comb and across it. Raises ValueError for a file that is no
-    such image.
+    Angle 0 leaves a fibre in the direction `hits.comb`. `fibers` is one of:
+
+    * 'even': all angles are 0.
+    * 'crushed': patches with different angles.
+    * the path of a PNG file. Its red and green channels map 0 … 1 to −1 … 1 and are the components
+      of the fibre's direction along the comb and across it, at `hits.uv`.
+
+    Raises ValueError for a file that is no such image.
     """
     if fibers == EVEN:
         return np.zeros(len(hits.position))
     if fibers == CRUSHED:
         return _crushed(hits.position)
-    return _from_map(_read(Path(fibers)), hits.uv)
+    return _angles_from_map(_read_map(Path(fibers)), hits.uv)
 
 
 def _crushed(position: np.ndarray) -> np.ndarray:
-    """Turn fibres by a smooth pattern with plateaus, the same for every run."""
+    """Return the angles of a smooth pattern with plateaus. The seed makes every run the same."""
     rng = np.random.default_rng(20200717)
     ways = rng.normal(size=(_WAVES, 3))
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
@@ -40,8 +47,8 @@ def _crushed(position: np.ndarray) -> np.ndarray:
     return _TURN * np.tanh(1.5 * (waves @ weights))
 
 
-def _read(path: Path) -> np.ndarray:
-    """Read red and green (height, width, 2) of a PNG, as −1 … 1."""
+def _read_map(path: Path) -> np.ndarray:
+    """Return red and green (height, width, 2) of a PNG file, mapped to −1 … 1."""
     from matplotlib import image  # noqa: PLC0415
     from PIL.PngImagePlugin import PngImageFile  # noqa: PLC0415
 
@@ -49,7 +56,7 @@ def _read(path: Path) -> np.ndarray:
         if path.stat().st_size > _MAX_BYTES:
             raise ValueError(f"fibers: {path} is larger than {_MAX_BYTES} bytes")
         data = path.read_bytes()
-        # This reads no pixels yet.
+        # This reads the header only, no pixels.
         width, height = PngImageFile(io.BytesIO(data)).size
         if max(width, height) > _MAX_EDGE:
             raise ValueError(
@@ -68,8 +75,11 @@ def _read(path: Path) -> np.ndarray:
     return 2 * np.asarray(pixels[..., :2], float) - 1
 
 
-def _from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
-    """Interpolate directions, not angles: an angle has a seam."""
+def _angles_from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
+    """Return the angles at `uv` (n, 2) by bilinear interpolation of the map, which repeats.
+
+    Directions are interpolated and not angles, because angles jump from π to −π.
+    """
     height, width, _ = pixels.shape
     x, y = (uv[:, i] * n - 0.5 for i, n in ((0, width), (1, height)))
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)

@@ -1,79 +1,93 @@
-"""The four functions of the fuzz BRDF by name: exact, or any set of tables."""
+"""The four functions that the fuzz BRDF needs, exact or from a set of tables.
+
+Tables are evaluated by their exported functions, with the same arguments and clamps as in a shader.
+Renderings and the ambient model therefore show what the exported code computes.
+"""
 
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import jax.numpy as jnp
 from jax import Array
 
-from coefficients.catalogue import form_of, load, names
-from fitting import Form
-from integrals import PS, G, Q, R
+import integrals
+from coefficients.catalogue import Entry, entries, published, refitted
 from integrals.fuzz.ps import scattered_fraction
+from quantities import Problem
+from quantities.fuzz import PS, G, Q, R
 
 
-@dataclass(frozen=True)
+# Compared and hashed by identity (eq=False): JAX takes it as a static argument.
+@dataclass(frozen=True, eq=False)
 class Functions:
-    """P_s(c, a, b, α, θf) of the cosines u·n, u·t, n·t; G(d, ν), Q(d) and R(α, θf)."""
+    """P_s, G, Q and R as JAX functions of scalars.
 
+    * `name`: 'exact', or the name of a set of tables.
+    * `ps(cos_un, cos_ut, cos_nt, alpha, theta_f)`: P_s for light from u. The cosines are u·n, u·t
+      and n·t; theta_f, in radians, is the polar angle of the fibre t, so that n·t = cos θf. The
+      closed form uses n·t, tables use θf.
+    * `g(density, cos_v)`, `q(density)`, `r(alpha, theta_f)`.
+    """
+
+    name: str
     ps: Callable[..., Array]
     g: Callable[..., Array]
     q: Callable[..., Array]
     r: Callable[..., Array]
 
 
-SETS = ("published", "refitted", "best")
+EXACT = Functions(
+    "exact",
+    ps=lambda cos_un, cos_ut, cos_nt, alpha, _: scattered_fraction(cos_un, cos_ut, cos_nt, alpha),
+    g=integrals.G.value,
+    q=integrals.Q.value,
+    r=integrals.R.value,
+)
 
 
-def table_sets() -> tuple[str, ...]:
-    """Name the sets that have a table of each quantity."""
-    return tuple(name for name in SETS if all(table_of(name, x.name) for x in (PS, G, Q, R)))
+def best(owner: Problem) -> Entry | None:
+    """Return the table of kind 'best' with the least rms error; None if there is none."""
+    measured = [
+        (entry.table.errors.off_grid.rms, entry)
+        for entry in entries(owner)
+        if entry.kind == "best" and entry.table is not None and entry.table.errors is not None
+    ]
+    return min(measured, key=lambda pair: pair[0])[1] if measured else None
+
+
+# Each set takes one table of a quantity, or None where there is no such table.
+CHOICES: dict[str, Callable[[Problem], Entry | None]] = {
+    "published": published,
+    "refitted": refitted,
+    "best": best,
+}
 
 
 @functools.cache
-def table_of(name: str, quantity: str) -> str | None:
-    """Name a set's table of a quantity; None if there is none.
+def table_sets() -> tuple[Functions, ...]:
+    """Return the functions of every set that has a table of each quantity.
 
-    'best' is of all forms that are not the paper's the one with the least rms error.
+    Every call returns the same objects, so that JAX compiles once for each set.
     """
-    if name != "best":
-        found = f"published/{quantity}" if name == "published" else quantity
-        return found if found in names() else None
-    errors = {
-        each: table.errors.off_grid.rms
-        for each, table in ((each, load(each)) for each in names() if each.startswith("best/"))
-        if table.quantity == quantity and table.errors is not None
-    }
-    return min(errors, key=errors.__getitem__, default=None)
+    found = []
+    for name, choose in CHOICES.items():
+        chosen = [entry for entry in map(choose, (PS, G, Q, R)) if entry is not None]
+        if len(chosen) == 4:
+            found.append(exported_functions(name, *chosen))
+    return tuple(found)
 
 
-def functions(name: str) -> Functions:
-    """Give the four functions by name: 'exact', or tables as 'published', 'refitted', 'best'.
-
-    A table's arguments are clamped to its form's domain, as the listings do.
-    """
-    if name == "exact":
-        exact_ps = lambda c, a, b, alpha, _: scattered_fraction(c, a, b, alpha)  # noqa: E731
-        return Functions(exact_ps, G.value, Q.value, R.value)
-    ps, g, q, r = (clamped(form_of(load(str(table_of(name, x.name))))) for x in (PS, G, Q, R))
-    return Functions(lambda c, a, b, *m: ps(*m, *_angles(c, a, b)), g, q, r)
-
-
-def clamped(form: Form) -> Callable[..., Array]:
-    """Give a form as a function whose arguments are first brought into the form's domain."""
-
-    def evaluate(*arguments):
-        inside = [
-            jnp.clip(x, axis.lower, axis.upper)
-            for x, axis in zip(arguments, type(form).axes, strict=True)
-        ]
-        return form(*inside)
-
-    return evaluate
-
-
-def _angles(cos_un: Array, cos_ut: Array, cos_nt: Array) -> tuple[Array, Array]:
-    """Give θu and |φ| from the cosines; forms of P_s are even in φ."""
-    sines = jnp.sqrt(jnp.maximum((1 - cos_un**2) * (1 - cos_nt**2), 1e-24))
-    return jnp.arccos(cos_un), jnp.arccos(jnp.clip((cos_ut - cos_un * cos_nt) / sines, -1, 1))
+def exported_functions(name: str, ps: Entry, g: Entry, q: Entry, r: Entry) -> Functions:
+    """Return the exported functions of four tables in float64, clamps included."""
+    material, direction = (each.call for each in ps.functions("double"))
+    (call_g,), (call_q,), (call_r,) = (entry.functions("double") for entry in (g, q, r))
+    return Functions(
+        name,
+        ps=lambda cos_un, cos_ut, _, alpha, theta_f: direction(
+            material(alpha, theta_f), cos_un, cos_ut
+        ),
+        # The exported function takes v·n first.
+        g=lambda density, cos_v: call_g.call(cos_v, density),
+        q=call_q.call,
+        r=call_r.call,
+    )

@@ -1,7 +1,7 @@
-"""What is rendered: a sphere and a cloth draped over one, as points with normals and fibres.
+"""The scenes, a sphere and a cloth that is draped over a ball, and what a camera sees of them.
 
-World axes: x to the right, y away from the camera, z up. Everything is arrays over the samples of a
-square image, row by row from its top left.
+World axes: x to the right, y away from the camera, z up. Arrays have one row for each sample of a
+square image, in the order of its rows from the top left.
 """
 
 import functools
@@ -13,19 +13,24 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-# Rays that march over the cloth: steps to it, halvings of the last step, steps towards the sun.
+# A ray takes _STEPS steps to the cloth and halves the last one _HALVINGS times; a ray to the sun
+# takes _SHADOW_STEPS steps.
 _STEPS, _HALVINGS, _SHADOW_STEPS = 80, 12, 24
-# Directions and steps in which the cloth's horizon is looked for.
+# The horizon around a point of the cloth is searched in _AZIMUTHS directions, in _HORIZON_STEPS
+# steps each.
 _AZIMUTHS, _HORIZON_STEPS = 8, 8
 
 
 @dataclass(frozen=True)
 class Hits:
-    """What the image's samples see: arrays (n, 3), (n,); where `seen` is false, the backdrop.
+    """The points that the n samples of an image see.
 
-    `position` and unit `normal`, `comb` (the unit tangent that upright fibres lean to), `view`
-    towards the camera, `uv` (n, 2) in [0, 1) for maps, `open_sky` the part of the sky's light that
-    is not hidden by the surface itself.
+    * `seen` (n,): whether the sample sees the surface; otherwise it sees the backdrop.
+    * `position` (n, 3), and `normal` (n, 3), a unit vector.
+    * `comb` (n, 3): the unit tangent towards which fibres lean at azimuth 0.
+    * `view` (n, 3): the unit vector to the camera.
+    * `uv` (n, 2): coordinates in maps, in [0, 1).
+    * `open_sky` (n,): the part of the sky's light that the surface itself does not block.
     """
 
     seen: np.ndarray
@@ -39,7 +44,12 @@ class Hits:
 
 @dataclass(frozen=True)
 class Scene:
-    """A name, what a camera sees of it, and the part of the sun that reaches points (n, 3)."""
+    """A surface with a camera.
+
+    * `hits(size)`: the points that the samples see of an image of `size` × `size` samples.
+    * `sunlit(position, sun)`: the visible part (n,) of the sun, 0 to 1, at points (n, 3). `sun`
+      (3,) is the unit vector to the sun.
+    """
 
     name: str
     hits: Callable[[int], Hits]
@@ -47,9 +57,10 @@ class Scene:
 
 
 def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[np.ndarray, np.ndarray]:
-    """Give the eye (3,) and the unit directions (size², 3) of a perspective camera.
+    """Return the position (3,) of a perspective camera and its rays' unit directions (size², 3).
 
-    `width` is the image's width at the distance of `target`; z is up.
+    The camera is at `eye`, looks at `target`, and z is up. `width` is the width of what it sees at
+    the distance of `target`.
     """
     eye_, target_ = np.array(eye, float), np.array(target, float)
     ahead = (target_ - eye_) / np.linalg.norm(target_ - eye_)
@@ -78,7 +89,7 @@ def _sphere_hits(size: int) -> Hits:
 
 
 def cloth_height(x: Array, y: Array) -> Array:
-    """Give the height of a cloth that lies in folds and is draped over a ball."""
+    """Return the height z of the cloth at (x, y): folds, and a bump where the ball is."""
     r2 = (x + 0.15) ** 2 + (y - 0.4) ** 2
     ball = 0.55 * jnp.exp(-r2 / 0.36)
     across = x + 0.28 * jnp.sin(1.5 * y + 0.7) + 0.1 * jnp.sin(2.9 * y - x)
@@ -110,7 +121,10 @@ def _cloth_normal(position: Array) -> Array:
 
 @jax.jit
 def _march(eye: Array, rays: Array) -> Array:
-    """Find where rays first meet the cloth: steps of equal length, then halvings."""
+    """Return the points (n, 3) where rays first meet the cloth.
+
+    Equal steps bring a ray to the last point before the cloth; halved steps then refine it.
+    """
     top, bottom = 1.0, -0.35
     near, far = (top - eye[2]) / rays[:, 2], (bottom - eye[2]) / rays[:, 2]
     step = (far - near) / _STEPS
@@ -132,17 +146,18 @@ def _march(eye: Array, rays: Array) -> Array:
 
 
 def _cloth_sunlit(position: np.ndarray, sun: np.ndarray) -> np.ndarray:
-    """Give the part of a sun some degrees wide that the cloth leaves visible, (n,)."""
+    """Return the part (n,) of the sun, some degrees wide, that the cloth does not cover."""
     return np.asarray(_visible_sun(_single(position), _single(sun)), float)
 
 
 def _single(values: np.ndarray) -> Array:
-    """Give values in float32: marches over the cloth need no more, and take half the time."""
+    """Convert to float32, which is precise enough for rays over the cloth and twice as fast."""
     return jnp.asarray(values, jnp.float32)
 
 
 @jax.jit
 def _visible_sun(position: Array, sun: Array) -> Array:
+    """Return a soft shadow (n,) from the least clearance over distance on the way to the sun."""
 
     def clearance(i, least):
         distance = 0.02 + 1.6 * ((i + 1).astype(position.dtype) / _SHADOW_STEPS) ** 1.5
@@ -157,7 +172,7 @@ def _visible_sun(position: Array, sun: Array) -> Array:
 
 @jax.jit
 def _open_sky(position: Array, normal: Array) -> Array:
-    """Estimate the part of the sky's cosine-weighted light that the cloth itself leaves open."""
+    """Estimate the part (n,) of the sky's cosine-weighted light that the cloth does not block."""
 
     def hidden(k, total):
         azimuth = (k.astype(position.dtype) + 0.5) * (2 * jnp.pi / _AZIMUTHS)
@@ -169,7 +184,7 @@ def _open_sky(position: Array, normal: Array) -> Array:
             height = cloth_height(there[:, 0], there[:, 1]) - position[:, 2]
             return jnp.maximum(steepest, height / distance)
 
-        # How far the horizon stands above the tangent plane.
+        # The horizon is at least the tangent plane; only what rises above it blocks light.
         plane = -(normal[:, :2] @ ahead) / normal[:, 2]
         slope = jax.lax.fori_loop(0, _HORIZON_STEPS, rise, plane)
         return total + jnp.sin(jnp.arctan(slope)) - jnp.sin(jnp.arctan(plane))
@@ -179,7 +194,10 @@ def _open_sky(position: Array, normal: Array) -> Array:
 
 
 def _comb(normal: np.ndarray) -> np.ndarray:
-    """Give the unit tangents (n, 3) that are nearest to the x axis; shorter only where it is n."""
+    """Return the x axis projected onto the tangent planes, as unit vectors (n, 3).
+
+    The vector is shorter than one where the normal is almost the x axis.
+    """
     across = np.array([1.0, 0.0, 0.0]) - normal[:, :1] * normal
     return across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-6)
 

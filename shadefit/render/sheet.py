@@ -1,25 +1,30 @@
-"""The sheet of `shadefit render`: images and their differences, scene by scene."""
+"""The picture that `shadefit render` draws: images and their differences."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from shadefit.figures.style import ERRORS, render
-from shadefit.render.images import srgb
+from shadefit.render.comparison import Comparison
+from shadefit.render.srgb import to_srgb
 
-if TYPE_CHECKING:
-    from shadefit.render.compare import Comparison
-
+# Width and height of one image on the sheet.
 _INCHES = 2.0
+# The colour scale ends at this quantile of the absolute differences.
+_QUANTILE = 0.995
 
 
-def compare_sheet(comparisons: "list[Comparison]") -> bytes:
-    """Draw one row a scene: exact, each table, and each table's difference from exact; as PNG."""
+def draw_comparisons(comparisons: list[Comparison]) -> bytes:
+    """Return a PNG with one row for each scene.
+
+    A row has the exact image, the image of each set of tables, and the differences of the latter
+    from the exact one.
+    """
     return render(lambda: _draw(comparisons))["png"]
 
 
-def _draw(comparisons: "list[Comparison]") -> Figure:
+def _draw(comparisons: list[Comparison]) -> Figure:
     names = list(comparisons[0].tables)
     columns = 1 + 2 * len(names)
     figure = Figure(
@@ -27,17 +32,17 @@ def _draw(comparisons: "list[Comparison]") -> Figure:
         layout="constrained",
     )
     axes = figure.subplots(len(comparisons), columns, squeeze=False)
-    limit = round_up(max(_extent(c.difference(name)) for c in comparisons for name in names))
+    limit = round_up(max(_high_quantile(c.difference(name)) for c in comparisons for name in names))
     shown = None
     for row, each in zip(axes, comparisons, strict=True):
         for axis, pixels in zip(row, (each.exact, *each.tables.values()), strict=False):
-            axis.imshow(srgb(pixels))
+            axis.imshow(to_srgb(pixels))
         for axis, name in zip(row[1 + len(names) :], names, strict=True):
             shown = axis.imshow(each.difference(name), cmap=ERRORS, vmin=-limit, vmax=limit)
     titles = ["exact", *names, *(f"{name} − exact" for name in names)]
     for axis, title in zip(axes[0], titles, strict=True):
         axis.set_title(title)
-    # In words too: on one scale, differences far below the largest are not to be seen.
+    # All differences have one colour scale, on which small ones are invisible: print them too.
     for row, each in zip(axes, comparisons, strict=True):
         for axis, name in zip(row[1 + len(names) :], names, strict=True):
             off = np.abs(each.difference(name))
@@ -52,12 +57,12 @@ def _draw(comparisons: "list[Comparison]") -> Figure:
     return figure
 
 
-def _extent(difference: np.ndarray) -> float:
-    return float(np.quantile(np.abs(difference), 0.995))
+def _high_quantile(difference: np.ndarray) -> float:
+    return float(np.quantile(np.abs(difference), _QUANTILE))
 
 
 def round_up(value: float) -> float:
-    """Give the next 1, 2 or 5 times a power of ten; 1e-9 for nothing."""
+    """Return the least 1, 2 or 5 times a power of ten that is not below `value`; at least 1e-9."""
     if value <= 1e-9:
         return 1e-9
     power = 10.0 ** np.floor(np.log10(value))

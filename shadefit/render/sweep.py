@@ -1,4 +1,4 @@
-"""The talk's sweeps on one sheet: density, spread and tilt of the fibres."""
+"""A picture of one scene for many densities, spreads and tilts, as the talk shows them."""
 
 from dataclasses import replace
 from itertools import product
@@ -8,23 +8,31 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from shadefit.figures.style import render
-from shadefit.render.compare import Settings, image
-from shadefit.render.images import srgb
+from shadefit.render.functions import EXACT
+from shadefit.render.image import render_image
+from shadefit.render.scenes import Scene
+from shadefit.render.settings import Settings
+from shadefit.render.srgb import to_srgb
 
 DENSITIES = (0.1, 0.2)
 SPREADS = (0.2, 0.5, 1.0)
+# In degrees.
 TILTS = (0, 23, 45, 90)
+# Width and height of one image on the sheet.
 _INCHES = 1.7
 
 
-def draw_sweep(scene: str, settings: Settings) -> bytes:
-    """Draw every combination with exact functions: rows are layers, columns tilts; as PNG."""
+def draw_sweep(scene: Scene, settings: Settings) -> bytes:
+    """Return a PNG of every combination, drawn with exact functions.
+
+    A row has one density and spread, a column has one tilt; they replace those of `settings`.
+    """
     layers = list(product(DENSITIES, SPREADS))
     images = {
-        (layer, tilt): image(
+        (layer, tilt): render_image(
             scene,
             replace(settings, density=layer[0], spread=layer[1], tilt=float(np.radians(tilt))),
-            "exact",
+            EXACT,
         )
         for layer in layers
         for tilt in TILTS
@@ -38,7 +46,7 @@ def draw_sweep(scene: str, settings: Settings) -> bytes:
         for row, layer in zip(axes, layers, strict=True):
             row[0].set_ylabel(f"density {layer[0]:g}, spread {layer[1]:g}")
             for axis, tilt in zip(row, TILTS, strict=True):
-                axis.imshow(srgb(images[layer, tilt]))
+                axis.imshow(to_srgb(images[layer, tilt]))
                 axis.set(xticks=[], yticks=[])
                 axis.spines[:].set_visible(False)
         for axis, tilt in zip(axes[0], TILTS, strict=True):

@@ -1,151 +1,198 @@
-"""The explorer's half in Python: exported JavaScript, and what the page has to know about it.
+"""The explorer's part in Python: JavaScript functions, and the data that the page needs about them.
 
-Everything that the page evaluates is printed from the functions that are fitted and integrated
-here: P_s, G and Q in closed form, and every named table. R is the same product rule as
-`integrals.fuzz.r` over the exported P_s.
+The page evaluates closed forms and tables by JavaScript that is printed from the traced functions.
+A table is evaluated by its exported functions, with the clamps, as in a renderer.
 """
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field
 from importlib.resources import files
 
 import numpy as np
 from matplotlib import colormaps
 
-from coefficients.catalogue import form_of, load
-from integrals import INTEGRALS, Axis
-from integrals.fuzz.g import ambient_scattering
-from integrals.fuzz.ps import fraction_at
-from integrals.fuzz.q import average_penetration
-from integrals.rules.interval import gauss_legendre
-from programs.functions import Function, Parameter, function
-from programs.printing.printer import write
+from coefficients.catalogue import Entry, entries
+from programs import Function, Parameter, function, write_source
+from quantities import Problem, problems
+from quantities.problem import AverageHint, HemisphereHint
 from shadefit.figures.style import ERRORS, VALUES
-from shadefit.figures.values import kind_of, quantities, tables_of
+from shadefit.figures.values import axis_hints, hints_of
 
-SCRIPTS = ("explorer_model.js", "explorer_draw.js", "explorer.js")
-# R by the page's rule of so many nodes an angle: its error is in tests/test_explorer.py.
-NODES = 48
+SCRIPTS = ("explorer_model.js", "explorer_draw.js", "explorer_pictures.js", "explorer.js")
 _COLOURS = 33
+# JSON has no infinity: an end of a domain beyond this is no end.
+_LARGEST = 1e9
+_SUBSCRIPTS = dict(zip("aehijklmnoprstuvx0123456789", "ₐₑₕᵢⱼₖₗₘₙₒₚᵣₛₜᵤᵥₓ₀₁₂₃₄₅₆₇₈₉", strict=True))
+# The kinds of tables that are drawn before the reader chooses others.
+_SHOWN = ("published", "refitted")
 
 
-@dataclass(frozen=True)
-class _Slider:
-    """How far an argument is explored, in its own unit, and where it begins."""
+@dataclass
+class _Printed:
+    """The functions that the page calls, by name."""
 
-    lower: float
-    upper: float
-    start: float
+    functions: dict[str, Function] = field(default_factory=dict)
 
-
-_SLIDERS = {
-    "alpha": _Slider(0.05, 1.0, 0.35),
-    "theta_f": _Slider(0.0, np.pi / 2, np.pi / 4),
-    "theta_u": _Slider(0.0, np.pi / 2, np.pi / 6),
-    "phi": _Slider(-np.pi, np.pi, np.pi / 2),
-    "density": _Slider(0.001, 1.0, 0.2),
-    "cos_v": _Slider(0.001, 1.0, 0.5),
-}
-_EXACT: dict[str, Callable] = {
-    "ps": fraction_at,
-    "g": ambient_scattering,
-    "q": average_penetration,
-}
+    def add(self, *given: Function) -> str:
+        """Add functions, and return the name of the last one."""
+        self.functions |= {each.name: each for each in given}
+        return given[-1].name
 
 
-def functions() -> dict[str, Function]:
-    """Give every function that the page calls, by the name it has there."""
-    exact = [_exact(quantity) for quantity in _EXACT]
-    tables = [_of_table(name) for quantity in quantities() for name in tables_of(quantity)]
-    return {each.name: each for each in (*exact, *tables)}
-
-
-@cache
-def exported() -> str:
-    """Give the JavaScript of every function, as the printer writes it."""
-    return write(list(functions().values()), "javascript", "double")
+def explored() -> list[Problem]:
+    """List the quantities that the page can evaluate: by a closed form, a rule, or tables."""
+    return [
+        owner
+        for owner in problems().values()
+        if owner.closed_form or hints_of(owner).average or entries(owner)
+    ]
 
 
 def script() -> str:
-    """Give the page's whole script: exported functions, what is known of them, and the explorer."""
-    known = json.dumps(_known(), ensure_ascii=False, allow_nan=False)
+    """Return the page's whole script: printed functions, the data about them, and the explorer."""
+    functions, known = functions_and_data(explored())
+    given = [
+        f"const exported = {{ {', '.join(functions)} }};",
+        f"const known = {json.dumps(known, ensure_ascii=False, allow_nan=False)};",
+    ]
     own = [files("shadefit.report").joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS]
-    names = ", ".join(functions())
-    given = f"const exported = {{ {names} }};\nconst known = {known};"
-    parts = ['"use strict";', "(() => {", exported(), given, *own, "})();"]
-    # In a script element, nothing may look like its end.
+    parts = ['"use strict";', "(() => {", printed(functions), *given, *own, "})();"]
+    # HTML ends a script at the first "</script", even within a string.
     return "\n".join(parts).replace("</", "<\\/")
 
 
-def identifier(table: str) -> str:
-    """Make a table's name one of JavaScript: 'published/ps@printed' becomes publishedPsPrinted."""
-    kind = kind_of(table)
-    words = "".join(c if c.isalnum() else " " for c in table.rpartition("/")[2]).split()
-    first = "published" if kind == "printed" else kind
-    return first + "".join(word[:1].upper() + word[1:] for word in words)
+def printed(functions: dict[str, Function]) -> str:
+    """Return the JavaScript of functions, as the printer writes it."""
+    return write_source(list(functions.values()), "javascript", "double")
 
 
-def _exact(quantity: str) -> Function:
-    integral = INTEGRALS[quantity]
-    parameters = [_parameter(axis, _SLIDERS[axis.name]) for axis in integral.axes]
-    summary = f"{integral.symbol} in closed form."
-    return function(f"exact{quantity.capitalize()}", parameters, _EXACT[quantity], summary)
-
-
-def _of_table(name: str) -> Function:
-    table = load(name)
-    form = form_of(table)
-    parameters = [_parameter(axis, axis) for axis in form.axes]
-    summary = f"{form.integral.symbol} by {table.equation} of table {name}."
-    return function(identifier(name), parameters, form.__call__, summary)
-
-
-def _parameter(axis: Axis, limits: Axis | _Slider) -> Parameter:
-    # As far as is explored: of an axis without end, a table may be made for all of it.
-    upper = min(limits.upper, max(_SLIDERS[axis.name].upper, limits.lower))
-    return Parameter(axis.name, (float(limits.lower), float(upper)), axis.unit)
-
-
-def _known() -> dict:
-    rule = gauss_legendre(NODES, 0.0, 1.0)
-    return {
-        "quantities": [_quantity(name) for name in quantities()],
-        "sliders": {
-            name: {"low": slider.lower, "high": slider.upper, "start": slider.start}
-            for name, slider in _SLIDERS.items()
-        },
-        "rule": {"cosines": rule[0].tolist(), "weights": rule[1].tolist()},
+def functions_and_data(owners: list[Problem]) -> tuple[dict[str, Function], dict]:
+    """Return the functions that the page calls, by name, and what it knows about quantities."""
+    page = _Printed()
+    known = {
+        "quantities": [_quantity(page, owner) for owner in owners],
         "colours": {"values": _ramp(VALUES), "errors": _ramp(ERRORS)},
     }
+    return page.functions, known
 
 
-def _quantity(name: str) -> dict:
-    integral = INTEGRALS[name]
+def identifier(entry: Entry) -> str:
+    """Return a table's name in JavaScript: 'published/ps@printed' becomes publishedPsPrinted."""
+    first = "published" if entry.kind == "printed" else entry.kind
+    return first + _camel_case(entry.name.rpartition("/")[2])
+
+
+def _quantity(page: _Printed, owner: Problem) -> dict:
+    """Return the data of a quantity, and add the functions that it is evaluated by."""
+    hints = hints_of(owner)
     return {
-        "name": name,
-        "symbol": integral.symbol.replace("_s", "ₛ"),
+        "name": owner.name,
+        "symbol": _with_subscript(owner.symbol),
         "axes": [
-            {"name": axis.name, "symbol": axis.symbol, "unit": axis.unit, "meaning": axis.meaning}
-            for axis in integral.axes
+            {
+                "name": axis.name,
+                "symbol": axis.symbol,
+                "meaning": axis.meaning,
+                "low": hint.slider[0],
+                "high": hint.slider[1],
+                "start": hint.start,
+                "factor": hint.factor,
+                "unit": hint.unit,
+            }
+            for axis, hint in axis_hints(owner)
         ],
-        "tables": [_table(each) for each in tables_of(name)],
+        "against": hints.against or owner.axes[-1].name,
+        "values": list(hints.values or ()),
+        "largestError": hints.largest_error,
+        "exact": page.add(_exact(owner)) if owner.closed_form else None,
+        "average": _average(page, hints.average),
+        "hemisphere": _hemisphere(hints.hemisphere),
+        "tables": [_table(page, entry) for entry in entries(owner)],
     }
 
 
-def _table(name: str) -> dict:
-    form = form_of(load(name))
-    kind = kind_of(name)
+def _table(page: _Printed, entry: Entry) -> dict:
+    """Return the data of a table, and add its exported functions.
+
+    The first function is called with the values of the axes whose places are `order`. A second one
+    is called with the results of the first and with those of the function `inputs`.
+    """
+    name, form = identifier(entry), entry.require_fitted().form
+    exported = entry.functions("double", name)
+    page.add(*exported)
+    axes = [axis.name for axis in form.axes]
     return {
-        "name": name,
-        "kind": kind,
-        "function": identifier(name),
-        "domain": [[float(axis.lower), min(float(axis.upper), 1e9)] for axis in form.axes],
-        "shown": kind in ("published", "refitted"),
+        "name": entry.name,
+        "kind": entry.kind,
+        "functions": [each.name for each in exported],
+        "order": [axes.index(argument.axis) for argument in entry.problem.calling.arguments],
+        "inputs": None if form.inputs is None else page.add(_inputs(entry)),
+        "domain": [
+            [max(float(axis.lower), -_LARGEST), min(float(axis.upper), _LARGEST)]
+            for axis in form.axes
+        ],
+        "shown": entry.kind in _SHOWN,
     }
+
+
+def _inputs(entry: Entry) -> Function:
+    """Return the function from all axes' values to a second function's own arguments.
+
+    The tables of a quantity share it, because they share its calling convention.
+    """
+    owner, inputs = entry.problem, entry.require_fitted().form.inputs
+    assert inputs is not None
+    symbols = ", ".join(name for name, _ in owner.calling.second)
+    return function(
+        f"inputs{_camel_case(owner.name)}",
+        _parameters(owner),
+        lambda *point: tuple(inputs(*point)),
+        f"The arguments {symbols} of the functions of {owner.symbol}.",
+        len(owner.calling.second),
+        "inputs",
+    )
+
+
+def _exact(owner: Problem) -> Function:
+    name, summary = f"exact{_camel_case(owner.name)}", f"{owner.symbol} in closed form."
+    assert owner.closed_form is not None
+    return function(name, _parameters(owner), owner.closed_form, summary)
+
+
+def _parameters(owner: Problem) -> list[Parameter]:
+    return [
+        Parameter(axis.name, (float(hint.slider[0]), float(hint.slider[1])), axis.unit)
+        for axis, hint in axis_hints(owner)
+    ]
+
+
+def _average(page: _Printed, hint: AverageHint | None) -> dict | None:
+    if hint is None:
+        return None
+    rules = [{"nodes": nodes.tolist(), "weights": w.tolist()} for nodes, w in hint.rules]
+    return {"integrand": page.add(_exact(hint.integrand)), "rules": rules}
+
+
+def _hemisphere(hint: HemisphereHint | None) -> dict | None:
+    if hint is None:
+        return None
+    return {"polar": hint.polar, "azimuth": hint.azimuth, "caption": hint.caption}
+
+
+def _camel_case(name: str) -> str:
+    words = "".join(c if c.isalnum() else " " for c in name).split()
+    return "".join(word[:1].upper() + word[1:] for word in words)
+
+
+def _with_subscript(symbol: str) -> str:
+    """Write what follows '_' as a subscript, P_s as Pₛ, if Unicode has its letters."""
+    base, _, below = symbol.partition("_")
+    if not all(letter in _SUBSCRIPTS for letter in below):
+        return symbol
+    return base + "".join(_SUBSCRIPTS[letter] for letter in below)
 
 
 def _ramp(name: str) -> list[list[int]]:
+    """Return colours of a map, as red, green and blue from 0 to 255."""
     colours = colormaps[name](np.linspace(0, 1, _COLOURS))[:, :3]
     return np.round(255 * colours).astype(int).tolist()

@@ -1,4 +1,4 @@
-// Drawing: line charts in SVG, discs on a canvas. Nothing here knows what is drawn.
+// Drawing: line charts in SVG, and discs on a canvas. Nothing here depends on the quantity.
 
 function element(name, attributes = {}, text = "") {
     const made = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -18,18 +18,20 @@ function ticks(low, high, count) {
 }
 
 function short(value) {
-    const text = Math.abs(value) < 1e-12 ? "0" : String(Number(value.toPrecision(3)));
-    return text.replace("-", "−");
+    const rounded = Math.abs(value) < 1e-12 ? 0 : Number(value.toPrecision(3));
+    const small = rounded !== 0 && Math.abs(rounded) < 1e-3;
+    return (small ? rounded.toExponential() : String(rounded)).replaceAll("-", "−");
 }
 
-// Draws `lines` ({ style, points: [[x, y], …] }, y NaN where there is nothing) into a container as
-// wide as it is; `bounds`, values of y that are
-// seen whatever the lines need; `mark` is x of the place explored.
+// Draws lines into a container, over its whole width. Each of `lines` is { style, points:
+// [[x, y], …] }, with y = NaN where nothing is drawn. The range of y contains the values `bounds`.
+// A vertical line marks x = `mark`, the explored place.
 function chart(container, { lines, bounds, xRange, xTicks, xLabel, yLabel, mark, height, label }) {
     const width = Math.max(260, container.clientWidth);
-    const [left, right, top, bottom] = [54, 12, 12, 38];
+    const [left, right, top, bottom] = [62, 12, 12, 38];
     const finite = lines.flatMap((line) => line.points.map(([, y]) => y)).filter(Number.isFinite);
     let [low, high] = [Math.min(...finite, ...bounds), Math.max(...finite, ...bounds)];
+    if (low > high) [low, high] = [0, 1];
     if (high === low) [low, high] = [low - 1e-6, high + 1e-6];
     const [from, to] = xRange;
     const x = (value) => left + ((value - from) / (to - from)) * (width - left - right);
@@ -73,7 +75,8 @@ function chart(container, { lines, bounds, xRange, xTicks, xLabel, yLabel, mark,
     container.replaceChildren(svg);
 }
 
-// Fills the unit disc of a square canvas: `value(x, y, pixel)` in [0, 1], NaN for nothing.
+// Fills the unit disc of a square canvas. `value(x, y, pixel)` is a place on the colour ramp, from 0
+// to 1, or NaN for a pixel without colour.
 function disc(canvas, ramp, value) {
     const size = canvas.width;
     const context = canvas.getContext("2d");
@@ -82,7 +85,7 @@ function disc(canvas, ramp, value) {
         for (let column = 0; column < size; ++column) {
             const x = ((column + 0.5) / size) * 2 - 1;
             const y = 1 - ((row + 0.5) / size) * 2;
-            // A little more than the disc: the style sheet cuts it round.
+            // Slightly more than the disc is filled; the style sheet cuts off the rest.
             if (x * x + y * y > 1.05) continue;
             const pixel = row * size + column;
             const fraction = value(x, y, pixel);
@@ -98,4 +101,17 @@ function disc(canvas, ramp, value) {
         }
     }
     context.putImageData(image, 0, 0);
+}
+
+// Draws a ring around a place of the unit disc.
+function ring(canvas, x, y) {
+    const context = canvas.getContext("2d");
+    const half = canvas.width / 2;
+    context.beginPath();
+    context.arc(half * (1 + x), half * (1 - y), 4, 0, 2 * Math.PI);
+    for (const [width, colour] of [[2.5, "#ffffff"], [1.2, "#000000"]]) {
+        context.lineWidth = width;
+        context.strokeStyle = colour;
+        context.stroke();
+    }
 }

@@ -1,35 +1,44 @@
-// What is explored: the state of the controls, and values by the exported functions.
+// The model of the explorer: the state of the controls, and values by the printed functions.
+// It does not need a page: tests run it in Node.
 
-const STEPS = 160; // of a curve; R, which is an integral itself, has fewer
-const INTEGRAL_STEPS = 60;
+const STEPS = 160; // of a curve
+const AVERAGE_STEPS = 60; // of a curve of averages, each of which is a sum over many points
 
 const quantities = Object.fromEntries(known.quantities.map((each) => [each.name, each]));
-const state = Object.fromEntries(
-    Object.entries(known.sliders).map(([name, slider]) => [name, slider.start]));
-// By quantity: the argument that its curves are drawn against.
-const against = { ps: "theta_u", g: "cos_v", q: "density", r: "theta_f" };
-let current = quantities.ps;
+// The explored place: the value of each axis, in the axis's own unit. Quantities share it.
+const state = {};
+// By quantity: the axis that its curves are drawn against.
+const against = Object.fromEntries(known.quantities.map((each) => [each.name, each.against]));
+let current = known.quantities[0];
 
-// R: the exported P_s averaged by Gauss's rule in cos θu and midpoints in φ.
-function averageOverLights(alpha, thetaF) {
-    const { cosines, weights } = known.rule;
-    const count = cosines.length;
-    let sum = 0;
-    for (let i = 0; i < count; ++i) {
-        const thetaU = Math.acos(cosines[i]);
-        let row = 0;
-        for (let j = 0; j < count; ++j)
-            row += exported.exactPs(alpha, thetaF, thetaU, ((j + 0.5) * Math.PI) / count);
-        sum += weights[i] * cosines[i] * row;
-    }
-    return (2 * sum) / count;
+// Makes a quantity the explored one, and moves the place into the ranges of its sliders.
+function select(name) {
+    current = quantities[name];
+    for (const { name: axis, low, high, start } of current.axes)
+        state[axis] = Math.min(Math.max(state[axis] ?? start, low), high);
 }
 
-const exact = {
-    ps: exported.exactPs, g: exported.exactG, q: exported.exactQ, r: averageOverLights,
-};
+// The weighted sum of a function over the points of a product of rules. `point` is extended by one
+// node of each rule.
+function weightedSum(value, point, rules) {
+    if (!rules.length) return value(...point);
+    const [{ nodes, weights }, ...others] = rules;
+    return nodes.reduce(
+        (sum, node, i) => sum + weights[i] * weightedSum(value, [...point, node], others), 0);
+}
 
-// Why a table says nothing at a place, or "".
+function hasExact({ exact, average }) {
+    return Boolean(exact || average);
+}
+
+// The exact value of the current quantity; NaN if the page cannot compute it.
+function exactAt(point) {
+    const { exact, average } = current;
+    if (exact) return exported[exact](...point);
+    return average ? weightedSum(exported[average.integrand], point, average.rules) : NaN;
+}
+
+// Names the axes on which a point is outside the domain of a table, or returns "".
 function outside(table, point) {
     return table.domain.flatMap(([low, high], i) => {
         const inside = point[i] >= low && point[i] <= high;
@@ -37,24 +46,38 @@ function outside(table, point) {
     }).join(", ");
 }
 
+// Evaluates a table by its exported functions. The first result of two functions is kept until its
+// arguments change, as in a renderer, which computes it once for a material.
 function evaluate(table, point) {
-    return outside(table, point) ? NaN : exported[table.function](...point);
+    const first = table.order.map((axis) => point[axis]);
+    const [name, second] = table.functions;
+    if (!second) return exported[name](...first);
+    if (!table.cached || first.some((value, i) => value !== table.cached.first[i]))
+        table.cached = { first, results: exported[name](...first) };
+    return exported[second](table.cached.results, ...exported[table.inputs](...point));
 }
 
+// The explored point, with the values of some axes changed.
 function at(changes = {}) {
     return current.axes.map((axis) => changes[axis.name] ?? state[axis.name]);
 }
 
-// θu is drawn through the zenith: to the left of it the light stands at φ + 180°.
+function axisOf(name) {
+    return current.axes.find((axis) => axis.name === name);
+}
+
+// Values of an axis that a curve is drawn at. A polar angle of a hemisphere is drawn through the
+// zenith: negative angles are directions with the opposite azimuth.
 function places(name) {
-    const { low, high } = known.sliders[name];
-    const from = name === "theta_u" ? -high : low;
-    const count = current.name === "r" ? INTEGRAL_STEPS : STEPS;
+    const { low, high } = axisOf(name);
+    const from = name === current.hemisphere?.polar ? -high : low;
+    const count = current.exact || !current.average ? STEPS : AVERAGE_STEPS;
     return Array.from({ length: count + 1 }, (_, i) => from + ((high - from) * i) / count);
 }
 
 function pointAlong(name, value) {
-    if (name !== "theta_u" || value >= 0) return at({ [name]: value });
-    const phi = state.phi > 0 ? state.phi - Math.PI : state.phi + Math.PI;
-    return at({ theta_u: -value, phi });
+    const { polar, azimuth } = current.hemisphere ?? {};
+    if (name !== polar || value >= 0) return at({ [name]: value });
+    const turned = state[azimuth] + (state[azimuth] > 0 ? -Math.PI : Math.PI);
+    return at({ [polar]: -value, [azimuth]: turned });
 }

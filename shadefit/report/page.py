@@ -1,51 +1,31 @@
-"""`shadefit report`: one HTML file with the tables' worth, the figures and the explorer in it."""
+"""The report: one HTML page with the tables' errors and costs, all pictures, and the explorer."""
 
 import re
 from base64 import b64encode
 from collections.abc import Mapping
 from html import escape
 from importlib.resources import files
-from pathlib import Path
 
-from coefficients.files import require_writable_file, write_whole
-from integrals import INTEGRALS
-from shadefit.figures import PICTURES, render
-from shadefit.figures.values import quantities
-from shadefit.report import sections as tables
-from shadefit.report.explorer import script
+from quantities import problems
+from shadefit.figures import Picture, pictures
+from shadefit.report import sections
+from shadefit.report.explorer import explored, script
 from shadefit.report.sections import markup
-from shadefit.terminal import stages
 
 
-def run(out: Path) -> None:
-    """Draw every picture and write the report; the same tables give the same bytes.
-
-    Raises ValueError where the file cannot be written.
-    """
-    require_writable_file(out)
-    drawn = {}
-    with stages() as progress:
-        task = progress.add_task("")
-        for name, picture in PICTURES.items():
-            progress.update(task, description=name)
-            drawn[name] = render(picture.draw)["png"]
-        progress.update(task, description="tables")
-        write_whole(out, page(drawn))
-    print(out)
-
-
-def page(pictures: Mapping[str, bytes]) -> str:
-    """Give the report with PNG files of pictures, by the name of the picture."""
+def page(drawn: Mapping[str, bytes]) -> str:
+    """Return the report with the PNG files of pictures, by the names of the pictures."""
+    known = pictures()
     return assemble(
-        tables.summary(list(INTEGRALS)),
-        "\n".join(_figure(name, data) for name, data in pictures.items()),
-        tables.errata(),
-        tables.provenance(),
+        sections.summary(list(problems().values())),
+        "\n".join(figure(name, known[name], png) for name, png in drawn.items()),
+        sections.errata(),
+        sections.provenance(),
     )
 
 
 def assemble(summary: str, figures: str, errata: str, provenance: str) -> str:
-    """Give the page with the explorer and these sections, each in HTML."""
+    """Return the page with the explorer and these sections, each in HTML."""
     parts = {
         "style": _packaged("report.css"),
         "quantities": _choices(),
@@ -58,23 +38,8 @@ def assemble(summary: str, figures: str, errata: str, provenance: str) -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: parts[slot[1]], _packaged("report.html"))
 
 
-def _packaged(name: str) -> str:
-    return files("shadefit.report").joinpath(name).read_text(encoding="utf-8").rstrip()
-
-
-def _choices() -> str:
-    lines = []
-    for index, name in enumerate(quantities()):
-        chosen = " checked" if index == 0 else ""
-        lines.append(
-            f'<label><input type="radio" name="quantity" value="{name}"{chosen}> '
-            f"{markup(INTEGRALS[name].symbol)}</label>"
-        )
-    return "\n".join(lines)
-
-
-def _figure(name: str, png: bytes) -> str:
-    picture = PICTURES[name]
+def figure(name: str, picture: Picture, png: bytes) -> str:
+    """Return a picture with its title and caption, in HTML."""
     source = f"data:image/png;base64,{b64encode(png).decode()}"
     return (
         f'<figure id="figure-{name}">\n<h3>{markup(picture.title)}</h3>\n'
@@ -84,6 +49,23 @@ def _figure(name: str, png: bytes) -> str:
     )
 
 
+def _packaged(name: str) -> str:
+    return files("shadefit.report").joinpath(name).read_text(encoding="utf-8").rstrip()
+
+
+def _choices() -> str:
+    """Return a radio button for each quantity of the explorer."""
+    lines = []
+    for index, owner in enumerate(explored()):
+        chosen = " checked" if index == 0 else ""
+        lines.append(
+            f'<label><input type="radio" name="quantity" value="{escape(owner.name)}"{chosen}> '
+            f"{markup(owner.symbol)}</label>"
+        )
+    return "\n".join(lines)
+
+
 def _width(png: bytes) -> int:
-    # Of the first chunk: four bytes of width stand behind signature, length and name.
+    # A PNG file begins with 8 bytes of signature, and the length and name of the first chunk, of 4
+    # bytes each. That chunk begins with the width.
     return int.from_bytes(png[16:20], "big")

@@ -63,6 +63,13 @@ def test_a_value_that_is_nan_ends_the_search_without_a_proof():
     assert found == Bounds(-np.inf, np.inf, 1)
 
 
+def test_a_value_that_is_nan_is_not_forgotten_in_later_rounds():
+    # It is NaN about x = −0.5, which is a middle of the boxes of the second round.
+    program = program_of(lambda x, y: jnp.sqrt((x + 0.5) ** 2 - 1e-3))
+    found = BranchAndBound().bound_output(program, SQUARE, ANYTHING, to_within(0.1))
+    assert found == Bounds(-np.inf, np.inf, 3)
+
+
 def test_probes_find_a_value_that_corners_and_middles_miss():
     # The function is negative only within 1e-4 of (0.3, −0.2).
     program = program_of(lambda x, y: (x - 0.3) ** 2 + (y + 0.2) ** 2 - 1e-8)

@@ -196,4 +196,10 @@ def test_a_box_is_settled_if_both_bounds_are_allowed():
     settled = within(NOWHERE_NEGATIVE)
     below, above = np.array([0.0, -1e-301, -1e-3]), np.array([1.0, 2.0, np.inf])
     assert settled(below, above, 0.0, 1.0).tolist() == [True, True, False]
-    assert within((0.0, 1.0))(below, above, 0.0, 1.0).tolist() == [True, False, False]
+    settled = within((0.0, 1.0))
+    assert settled(np.zeros(3), np.array([1.0, 2.0, 0.5]), 0.0, 1.0).tolist() == [True, False, True]
+
+
+def test_a_bound_of_zero_is_no_proof():
+    assert DenominatorBound(1e-300, 1).holds
+    assert not DenominatorBound(0.0, 1).holds

@@ -1,4 +1,4 @@
-"""The ambient model: its errors where the answer is known, and its energy."""
+"""The ambient model: its errors where they are known, and its largest radiances."""
 
 import functools
 import json
@@ -10,18 +10,18 @@ import pytest
 
 from integrals import PS
 from integrals.fuzz.radiance import base_response, layer_response
-from shadefit.ambient.energy import deferred_in_uniform_light, energy
-from shadefit.ambient.errors import (
-    RULE,
-    errors,
-    lights,
-    lit_phase,
-    points,
+from shadefit.ambient.energy import deferred_in_uniform_light, largest_radiances
+from shadefit.ambient.errors import model_errors
+from shadefit.ambient.lights import lights
+from shadefit.ambient.radiances import (
+    HEMISPHERE_RULE,
+    materials_and_views,
+    phase_integrals,
     radiances,
 )
-from shadefit.ambient.sheet import periodic
+from shadefit.ambient.sheet import interpolate_period
 from shadefit.cli import main
-from shadefit.render.functions import functions
+from shadefit.render.functions import EXACT, table_sets
 from shading import (
     deferred_radiance,
     direction,
@@ -33,19 +33,25 @@ from shading import (
 )
 from tests.batches import batched
 
-# What RULE promises of radiances in light of mean radiance of order one.
+# The largest error of HEMISPHERE_RULE for radiances in light whose mean radiance is about 1.
 ACCURACY = 1e-4
 
 
 @functools.cache
-def few(*names):
-    """Evaluate an isotropic and a sharp material, three views each."""
+def radiances_at_six_points():
+    """Return radiances for an isotropic material, then for a sharp one, three views each."""
     views = [(0.0, 0.0), (1.0, np.pi / 4), (1.4, np.pi)]
     materials = [(1.0, 0.4, 0.2), (0.3, 0.4, 0.2)]
-    return radiances(np.array([[*m, *v] for m in materials for v in views]), names)
+    at = np.array([[*m, *v] for m in materials for v in views])
+    return radiances(at, (EXACT, published()))
 
 
-def test_lights_are_the_lobes_that_they_are_said_to_be():
+def published():
+    (found,) = (each for each in table_sets() if each.name == "published")
+    return found
+
+
+def test_the_harmonics_of_lights_have_the_lobes_as_radiance():
     ways = np.random.default_rng(0).normal(size=(200, 3))
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     axes = {"from above": 2, "where fibres point": 0, "from the side": 1}
@@ -59,7 +65,7 @@ def test_lights_are_the_lobes_that_they_are_said_to_be():
 
 @pytest.mark.slow
 def test_the_model_is_exact_for_isotropic_fibres_in_uniform_light():
-    found = few()
+    found = radiances_at_six_points()
     column = found.lights.index("uniform")
     for part in ("layer", "base"):
         model, exact = found.models["exact"][part], found.exact[part]
@@ -67,11 +73,11 @@ def test_the_model_is_exact_for_isotropic_fibres_in_uniform_light():
 
 
 @pytest.mark.slow
-def test_the_models_factor_is_not_the_integral_that_it_stands_for():
+def test_the_models_factor_differs_from_the_phase_integral():
     at = np.array([(1.0, 0.4, 0.2, 1.0, 0.5), (0.3, 0.0, 0.2, 0.0, 0.0), (0.3, 1.0, 0.2, 1.0, 0.5)])
-    found = lit_phase(at)
+    found = phase_integrals(at)
     np.testing.assert_allclose(found[0], 0.5, atol=ACCURACY)
-    # By reflections of the view: p(u, v) = p(v, u) σ(v)/σ(u).
+    # An independent estimate by Monte Carlo, from p(u, v) = p(v, u) σ(v)/σ(u).
     alpha, fiber, view = 0.3, fiber_direction(1.0), direction(1.0, 0.5)
     root, points = fiber_root(fiber, alpha), np.random.default_rng(0).random((200_000, 2))
 
@@ -86,8 +92,8 @@ def test_the_models_factor_is_not_the_integral_that_it_stands_for():
 
 
 @pytest.mark.slow
-def test_the_model_errs_for_sharp_fibres_far_more_than_its_tables():
-    rows = {(row["part"], row["light"]): row for row in errors(few())}
+def test_for_sharp_fibres_the_model_has_larger_errors_than_its_tables():
+    rows = {(row["part"], row["light"]): row for row in model_errors(radiances_at_six_points())}
     row = rows["layer", "against fibres"]
     assert row["rms"]["exact"] > 0.1
     assert abs(row["rms"]["published"] - row["rms"]["exact"]) < 0.3 * row["rms"]["exact"]
@@ -95,9 +101,9 @@ def test_the_model_errs_for_sharp_fibres_far_more_than_its_tables():
 
 
 @pytest.mark.slow
-def test_errors_are_those_of_the_radiances():
-    found = few("published")
-    (row,) = (r for r in errors(found) if r["part"] == "layer" and r["light"] == "uniform")
+def test_errors_follow_from_the_radiances():
+    found = radiances_at_six_points()
+    (row,) = (r for r in model_errors(found) if r["part"] == "layer" and r["light"] == "uniform")
     exact, model = (p["layer"][:, 0] for p in (found.exact, found.models["published"]))
     expected = np.sqrt(np.mean((model - exact) ** 2)) / exact.mean()
     np.testing.assert_allclose(row["rms"]["published"], expected, rtol=1e-12)
@@ -105,29 +111,29 @@ def test_errors_are_those_of_the_radiances():
 
 
 @pytest.mark.slow
-def test_no_view_gains_in_uniform_light_but_for_tables_at_their_edge():
-    rows = energy(few("published"))
+def test_in_uniform_light_only_tables_at_their_edge_exceed_the_light():
+    rows = largest_radiances(radiances_at_six_points())
     largest = {row["what"]: row["largest"] for row in rows}
-    # Fibres of three times white: only the deferred version takes them.
+    # The deferred version has fibres of five times this albedo: three times white.
     assert largest.pop("deferred, albedo 0.6") > 1
     assert all(value < 1 for value in largest.values())
-    # Published P_s falls to −0.04: at one grazing view the model's layer exceeds the light.
-    chosen = functions("published")
+    # Published P_s is as low as −0.04: at one grazing view the model's layer exceeds the light.
+    tables = published()
     alpha, theta_f, density, cos_v, phi = 0.1672, 0.3841, 0.4494, 0.01254, 2.93
     sine = np.sqrt(1 - cos_v**2)
     cos_vt = sine * np.cos(phi) * np.sin(theta_f) + cos_v * np.cos(theta_f)
     cosines = (jnp.asarray(x) for x in (cos_v, cos_vt, np.cos(theta_f)))
-    down = chosen.ps(*cosines, alpha, theta_f)
+    down = tables.ps(*cosines, alpha, theta_f)
     assert down < 0
-    assert 1 < chosen.g(density, cos_v) * (1 - down) < 1.02
+    assert 1 < tables.g(density, cos_v) * (1 - down) < 1.02
 
 
 @pytest.mark.slow
-def test_the_deferred_version_is_linear_in_albedo_and_gains_when_it_is_high():
+def test_the_deferred_version_is_linear_in_albedo_and_can_exceed_the_light():
     low, high = deferred_in_uniform_light(0.1, 0.1), deferred_in_uniform_light(0.6, 0.1)
     np.testing.assert_allclose(high, 6 * low, rtol=1e-12)
     assert high > 1
-    # The same integral by uniform random directions of light.
+    # The same integral with uniform random directions of light.
     rng = np.random.default_rng(1)
     cosine, phi = rng.uniform(-0.2, 1, 100_000), rng.uniform(0, 2 * np.pi, 100_000)
     sine = np.sqrt(1 - cosine**2)
@@ -139,14 +145,14 @@ def test_the_deferred_version_is_linear_in_albedo_and_gains_when_it_is_high():
 
 
 @pytest.mark.slow
-def test_the_rule_is_as_good_as_it_says():
-    at = points()[::7]
-    coarse = batched(functools.partial(layer_response, **RULE), 16)(*at.T)
+def test_the_hemisphere_rule_has_the_stated_accuracy():
+    at = materials_and_views()[::7]
+    coarse = batched(functools.partial(layer_response, **HEMISPHERE_RULE), 16)(*at.T)
     fine = batched(functools.partial(layer_response, step=1 / 16, azimuths=256), 16)(*at.T)
     assert np.abs(coarse - fine).max() < ACCURACY
     bases = [
         batched(functools.partial(base_response, **rule), 16)(*at[::5, :3].T)
-        for rule in (RULE, {"step": 1 / 16, "azimuths": 256})
+        for rule in (HEMISPHERE_RULE, {"step": 1 / 16, "azimuths": 256})
     ]
     for coarse, fine in zip(*bases, strict=True):
         assert np.abs(coarse - fine).max() < ACCURACY
@@ -158,15 +164,15 @@ def test_the_command_prints_what_it_measured(tmp_path, capsys):
         main(["ambient", "--out", str(tmp_path), "--json"])
     assert stopped.value.code == 0
     record = json.loads(capsys.readouterr().out)
-    assert record["points"] == len(points())
+    assert record["points"] == len(materials_and_views())
     assert len(record["errors"]) == 2 * len(lights())
     assert (tmp_path / "ambient.png").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("n", [7, 8])
-def test_a_period_is_interpolated_by_its_harmonics(n):
+def test_a_sum_of_harmonics_is_interpolated_exactly(n):
     def wave(x):
         return np.stack([1 + np.cos(x) - 2 * np.sin(3 * x), np.cos(2 * x)])
 
-    found = periodic(wave(2 * np.pi * np.arange(n) / n), 50)
+    found = interpolate_period(wave(2 * np.pi * np.arange(n) / n), 50)
     np.testing.assert_allclose(found, wave(np.linspace(0, 2 * np.pi, 51)), atol=1e-14)

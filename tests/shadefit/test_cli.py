@@ -12,14 +12,16 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from coefficients.catalogue import FOLDER, load, names
-from coefficients.table import parse, serialise
-from integrals import INTEGRALS
-from shadefit import refit
+from coefficients import files
+from coefficients.catalogue import FOLDER, names, resolve
+from coefficients.table import Table, parse, serialise
+from quantities import problems
 from shadefit.cli import main
-from shadefit.options import angle
+from shadefit.commands import refit
+from shadefit.commands.options import angle
 
 NAMES = names()
+REFERENCES = {name: problem.reference for name, problem in problems().items()}
 PS_POINT = ["--alpha", "0.35", "--theta-f", "45deg", "--theta-u", "30deg", "--phi", "90deg"]
 POINTS = {
     "ps": PS_POINT,
@@ -28,6 +30,10 @@ POINTS = {
     "r": ["--alpha", "0.35", "--theta-f", "45deg"],
     "velvet": ["--asymmetry", "-0.5"],
 }
+
+
+def table_of(name: str) -> Table:
+    return resolve(name).require_table()
 
 
 def run(capsys, *arguments):
@@ -54,13 +60,13 @@ def is_density(text):
         return False
 
 
-@pytest.mark.parametrize("name", INTEGRALS)
+@pytest.mark.parametrize("name", REFERENCES)
 def test_evaluate_gives_every_leg_within_its_error(capsys, name):
     status, out, _ = run(capsys, "evaluate", name, *POINTS[name], "--json")
     assert status == 0
     result = json.loads(out)
-    assert set(result["legs"]) == set(INTEGRALS[name].legs)
-    exact = result["legs"][INTEGRALS[name].reference]
+    assert set(result["legs"]) == set(REFERENCES[name].legs)
+    exact = result["legs"][REFERENCES[name].best_leg]
     for leg_name, leg in result["legs"].items():
         allowed = 5 * leg["error"] if leg_name == "monte_carlo" else leg["error"]
         assert abs(leg["value"] - exact["value"]) <= allowed + exact["error"]
@@ -99,7 +105,7 @@ def test_evaluate_shows_the_tables_that_are_asked_for(capsys, tmp_path):
     tables = json.loads(out)["tables"]
     assert list(tables) == ["published", "refitted", *own[1::2]]
     assert tables["best/q-9"] == tables[path]
-    stated = load("best/q-9").errors
+    stated = table_of("best/q-9").errors
     assert stated is not None
     assert abs(tables[path]["difference"]) <= stated.off_grid.max
     _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own)
@@ -131,9 +137,9 @@ def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
     capsys, tmp_path, monkeypatch
 ):
     written = []
-    monkeypatch.setattr(refit, "_table", lambda name, *_: load(name))
-    monkeypatch.setattr(refit, "write_whole", lambda path, _: written.append(path.absolute()))
-    own = [FOLDER / "refit" / "q.json", FOLDER / "best" / "q-4.json"]
+    monkeypatch.setattr(refit, "_table", lambda each, *_: table_of(each.name))
+    monkeypatch.setattr(files, "write_whole", lambda path, _: written.append(path.absolute()))
+    own = [FOLDER / "fuzz" / "refit" / "q.json", FOLDER / "fuzz" / "best" / "q-4.json"]
     for folder, said in (
         (tmp_path, own),
         (FOLDER.parent, [x.relative_to(FOLDER.parent) for x in own]),
@@ -169,7 +175,7 @@ def test_compare_prints_a_table(capsys):
 def test_export_prints_what_a_name_stands_for(capsys, name):
     status, out, _ = run(capsys, "export", name)
     assert status == 0
-    assert parse(out, name) == load(name)
+    assert parse(out, name) == table_of(name)
 
 
 def test_export_writes_a_file_that_can_be_named_in_its_turn(capsys, tmp_path):
@@ -180,7 +186,7 @@ def test_export_writes_a_file_that_can_be_named_in_its_turn(capsys, tmp_path):
 
 def test_list_names_every_table(capsys):
     _, out, _ = run(capsys, "list", "--json")
-    assert [row["name"] for row in json.loads(out)["tables"]] == names()
+    assert [row["name"] for row in json.loads(out)["tables"]] == list(names())
 
 
 @pytest.mark.parametrize("command", [[], ["refit"], ["compare"], ["evaluate"], ["export"]])
@@ -239,7 +245,7 @@ def test_bad_input_is_one_line(capsys, arguments):
 
 @pytest.mark.parametrize("numerator", [3, 10**30, 0.5, "ab"])
 def test_a_file_whose_shape_is_none_is_refused(capsys, tmp_path, numerator):
-    data = json.loads(serialise(load("best/r-25")))
+    data = json.loads(serialise(table_of("best/r-25")))
     data["shape"]["numerator"] = numerator
     path = tmp_path / "r.json"
     path.write_text(json.dumps(data))
@@ -249,7 +255,9 @@ def test_a_file_whose_shape_is_none_is_refused(capsys, tmp_path, numerator):
 @pytest.mark.parametrize("command", [["compare"], ["export", "--to", "c"], ["export"], ["cost"]])
 def test_a_file_that_would_steer_the_terminal_is_refused(capsys, tmp_path, command):
     path = tmp_path / "q.json"
-    path.write_text(json.dumps({**json.loads(serialise(load("q"))), "equation": "\x1b]0;owned\a"}))
+    path.write_text(
+        json.dumps({**json.loads(serialise(table_of("q"))), "equation": "\x1b]0;owned\a"})
+    )
     assert refuses(capsys, *command, str(path)).strip("\n").isprintable()
 
 
@@ -268,9 +276,14 @@ def test_a_file_that_would_steer_the_terminal_is_refused(capsys, tmp_path, comma
             ["evaluate", "q", "--d", "0", "--sequence", "halton"],
             "Invalid value for '--sequence': 'halton' is not one of 'random', 'sobol'.",
         ),
-        (["export", "exact/q"], "exact/ps with --to LANG"),
-        (["export", "exact/q", "--to", "c"], "allowed are exact/ps and tables' names"),
-        (["cost", "exact/q"], "allowed are exact/ps and tables' names"),
+        (["export", "exact/q"], "exact/q has no coefficients: allowed is exact/q with --to LANG"),
+        (
+            ["export", "exact/r", "--to", "c"],
+            "allowed are exact/ps, exact/g, exact/q",
+        ),
+        (["cost", "exact/r"], "no closed form is exported as 'exact/r'"),
+        (["compare", "exact/q"], "exact/q has no coefficients"),
+        (["evaluate", "q", "--density"], "Option '--density' requires an argument."),
         (["export", "exact/none.json", "--to", "c"], "exact/none.json"),
     ],
 )

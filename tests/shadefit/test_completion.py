@@ -5,33 +5,32 @@ import sys
 
 import pytest
 
-from coefficients.catalogue import AS_PRINTED, PUBLISHED, QUANTITIES, load, names
-from coefficients.shaders import EXACT_PS, shader
-from programs.languages import TARGETS
+from coefficients.catalogue import AS_PRINTED, names, resolve
+from programs import LANGUAGES
+from quantities import problems
 from shadefit import completion
-from shadefit.refit import ALL, selection
+from shadefit.commands.refit import ALL, selection
 
 
 def test_the_names_that_are_repeated_are_the_real_ones():
-    assert completion._PUBLISHED == PUBLISHED
-    assert completion._NAMES == QUANTITIES
-    assert completion._EXACT == (EXACT_PS,)
+    assert list(completion.QUANTITIES) == list(problems())
+    exact = [f"exact/{p.name}" for p in problems().values() if p.exact_code is not None]
+    assert list(completion.EXACT) == exact
 
 
 def test_all_that_there_is_is_completed():
-    assert completion.complete_quantity("") == [*QUANTITIES, ALL]
+    assert completion.complete_quantity("") == [*problems(), ALL]
     tables = [name for name in names() if not name.endswith(AS_PRINTED)]
     assert sorted(completion.complete_table("")) == sorted(tables)
-    assert completion.complete_shader("") == [*completion.complete_table(""), EXACT_PS]
-    assert completion.complete_language("") == list(TARGETS)
+    assert completion.complete_shader("") == [*completion.complete_table(""), *completion.EXACT]
+    assert completion.complete_language("") == list(LANGUAGES)
 
 
 def test_what_is_completed_is_taken():
     for name in completion.complete_quantity(""):
         assert selection([name])
-    for name in completion.complete_table(""):
-        load(name)
-    assert shader(EXACT_PS).form is None
+    for name in completion.complete_shader(""):
+        assert resolve(name).functions()
 
 
 @pytest.mark.parametrize(
@@ -39,7 +38,7 @@ def test_what_is_completed_is_taken():
     [
         (completion.complete_quantity, "a", [ALL]),
         (completion.complete_table, "published/p", ["published/ps"]),
-        (completion.complete_shader, "exact", [EXACT_PS]),
+        (completion.complete_shader, "exact/p", ["exact/ps"]),
         (completion.complete_language, "c", ["c", "cpp", "cuda"]),
         (completion.complete_table, "zz", []),
     ],

@@ -1,134 +1,210 @@
-"""The explorer: its functions against Python's, and the page in a real browser."""
+"""The explorer: its functions in Node against Python's, and the page in a real browser."""
 
+import json
 import re
 import shutil
+import subprocess
+from dataclasses import replace
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from coefficients.catalogue import form_of, load
-from integrals import INTEGRALS
-from programs.printing.printer import write
-from programs.toolchains.registry import toolchain
-from shadefit.figures.values import kind_of, quantities, tables_of
+from coefficients.catalogue import Entry, entries, resolve
+from coefficients.exported_code import exported_values
+from fitting import Form, Stage
+from integrals.reference import Axis, Estimate, Reference, leg
+from integrals.sampling import Sampling
+from quantities import Problem, problem, problems, register
+from quantities.calling_convention import Argument, CallingConvention
+from quantities.registry import unregister
+from shadefit.figures.values import axis_hints
 from shadefit.report import explorer
 from shadefit.report import page as report
 
-# What the page's eight decimals, and R's rule, may cost.
+# Values on the page have eight decimals, and the page's rule for R has an error.
 SHOWN = 1e-6
-# Where the page is read, in its own units (degrees), every table inside and outside its domain.
+# Places in the page's units (degrees): each has tables whose domain it is in, and others.
 PLACES = {
     "ps": [(0.35, 45, 30, 90), (0.2, 80, 89, -170), (1, 10, 0, 0), (0.05, 45, 60, 30)],
     "g": [(0.2, 0.5), (0.001, 0.001), (0.5, 1), (0.75, 0.3)],
     "q": [(0.2,), (0.001,), (0.5,), (0.9,)],
     "r": [(0.35, 45), (0.15, 0), (1, 90), (0.05, 30)],
+    "velvet": [(-0.5,), (-0.95,), (0,)],
 }
-# Milliseconds: a machine that is busy with other tests is slow.
+# Milliseconds. A machine that runs other tests at the same time is slow.
 TIMEOUT = 60_000
-CHROMIUM = shutil.which("chromium")
+NODE, CHROMIUM = shutil.which("node"), shutil.which("chromium")
 FLAGS = [
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
+# Evaluates a quantity, and each of its tables, at points that are read as JSON.
+_MAIN = """
+const points = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+const values = {};
+for (const quantity of known.quantities) {
+    select(quantity.name);
+    const own = values[quantity.name] = { exact: points[quantity.name].map(exactAt) };
+    for (const table of quantity.tables)
+        own[table.name] = points[quantity.name].map((point) => evaluate(table, point));
+}
+console.log(JSON.stringify(values));
+"""
 
 
-def some_tables(quantity):
-    """List the tables that the page is tested with: of other forms one, as each takes its time."""
-    every = tables_of(quantity)
-    best = [name for name in every if kind_of(name) == "best"]
-    return [name for name in every if name not in best[:-1]]
+def some_tables(owner):
+    """List the tables that the page is tested with: one best table only, as each takes time."""
+    every = entries(owner)
+    best = [entry for entry in every if entry.kind == "best"]
+    return [entry for entry in every if entry not in best[:-1]]
 
 
-@pytest.fixture(scope="module", autouse=True)
+@pytest.fixture(scope="module")
 def few_tables():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(explorer, "tables_of", some_tables)
-        explorer.exported.cache_clear()
+        patch.setattr(explorer, "entries", some_tables)
         yield
-    explorer.exported.cache_clear()
 
 
-def radians(quantity):
-    """Give the places (n, axes) in the units of the integral, 90° exactly at the domain's end."""
-    axes = INTEGRALS[quantity].axes
-    places = np.array(PLACES[quantity], float)
-    units = [np.pi / 180 if axis.unit == "rad" else 1 for axis in axes]
-    ends = [axis.upper for axis in axes]
-    return np.minimum(places * units, ends)
+def own_units(quantity):
+    """Return the places (n, axes) in the units of the axes, with 90° exactly at a domain's end."""
+    pairs = axis_hints(problem(quantity))
+    places = np.array(PLACES[quantity], float) / [hint.factor for _, hint in pairs]
+    return np.minimum(places, [axis.upper for axis, _ in pairs])
 
 
 @cache
 def in_python(quantity, name):
-    """Give the values of a table, or of the integral, at the places; None outside its domain."""
-    integral, points = INTEGRALS[quantity], radians(quantity)
+    """Return the exact values at the places, or those of a table's exported functions."""
+    points = own_units(quantity)
     if name == "exact":
-        return jax.jit(jax.vmap(lambda x: integral.value(*x)))(points).tolist()
-    form = form_of(load(name))
-    inside = np.all([axis.contains(x) for axis, x in zip(form.axes, points.T, strict=True)], axis=0)
-    # A few points of many forms: not worth compiling.
-    return [float(form(*x)) if here else None for x, here in zip(points, inside, strict=True)]
+        value = problem(quantity).reference.value
+        return jax.jit(jax.vmap(lambda x: value(*x)))(points).tolist()
+    return exported_values(resolve(name), points).tolist()
 
 
-def test_exported_functions_give_pythons_values():
-    javascript = toolchain("javascript")
-    missing = javascript.missing("double")
-    if missing is not None:
-        pytest.skip(missing)
-    functions = explorer.functions()
-    for identifier, quantity, name in (
-        ("exactPs", "ps", "exact"),
-        ("exactG", "g", "exact"),
-        ("exactQ", "q", "exact"),
-        ("publishedPs", "ps", "published/ps"),
-    ):
-        expected = in_python(quantity, name)
-        inside = np.array([value is not None for value in expected])
-        function, rows = functions[identifier], radians(quantity)[inside]
-        values = javascript.run(explorer.exported(), function, rows, "double")
-        wanted = [value for value in expected if value is not None]
-        np.testing.assert_allclose(np.ravel(values), wanted, rtol=0, atol=1e-12)
+def outside(quantity, name, place):
+    """Return whether a place is outside the domain of a table."""
+    axes = resolve(name).axes
+    return not all(axis.contains(x) for axis, x in zip(axes, place, strict=True))
+
+
+def in_node(owners, points):
+    """Evaluate quantities and their tables by the page's own code, in Node."""
+    if NODE is None:
+        pytest.skip("node is not on PATH (Debian: nodejs)")
+    functions, known = explorer.functions_and_data(owners)
+    model = files("shadefit.report").joinpath("explorer_model.js").read_text(encoding="utf-8")
+    parts = [
+        explorer.printed(functions),
+        f"const exported = {{ {', '.join(functions)} }};",
+        f"const known = {json.dumps(known, allow_nan=False)};",
+        *(model, _MAIN),
+    ]
+    given = json.dumps({name: rows.tolist() for name, rows in points.items()})
+    script = "\n".join(parts)
+    done = subprocess.run(
+        [NODE, "-e", script], input=given, capture_output=True, text=True, check=True, timeout=60
+    )
+    return json.loads(done.stdout)
+
+
+def sliders_points(owner, count=40):
+    """Return points (count, axes) at random over the ranges of the sliders."""
+    low, high = np.array([hint.slider for _, hint in axis_hints(owner)]).T
+    return low + (high - low) * np.random.default_rng(8).random((count, len(low)))
+
+
+def require_the_same(owners):
+    points = {owner.name: sliders_points(owner) for owner in owners}
+    values = in_node(owners, points)
+    for owner in owners:
+        found = values[owner.name]
+        exact = found.pop("exact")
+        expected = owner.reference.values(points[owner.name])
+        # R is averaged by a rule of 48² points, whose error is largest for the least α.
+        allowed = 1e-12 if owner.closed_form else 1e-6
+        np.testing.assert_allclose(exact, expected, rtol=0, atol=allowed)
+        for name, each in found.items():
+            expected = exported_values(resolve(name), points[owner.name])
+            np.testing.assert_allclose(each, expected, rtol=0, atol=1e-12, err_msg=name)
+
+
+def test_the_page_evaluates_the_exported_functions(few_tables):
+    require_the_same(list(problems().values()))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("quantity", PLACES)
-def test_every_tables_function_gives_pythons_values(quantity):
-    javascript = toolchain("javascript")
-    missing = javascript.missing("double")
-    if missing is not None:
-        pytest.skip(missing)
-    for name in tables_of(quantity):
-        function = explorer._of_table(name)
-        expected = in_python(quantity, name)
-        inside = np.array([value is not None for value in expected])
-        source = write(function, "javascript", "double")
-        values = javascript.run(source, function, radians(quantity)[inside], "double")
-        wanted = [value for value in expected if value is not None]
-        np.testing.assert_allclose(np.ravel(values), wanted, rtol=0, atol=1e-12)
+def test_the_page_evaluates_the_exported_functions_of_every_table():
+    require_the_same(list(problems().values()))
 
 
-def test_every_table_has_a_function_of_its_own(monkeypatch):
-    monkeypatch.setattr(explorer, "tables_of", tables_of)
-    every = [name for quantity in quantities() for name in tables_of(quantity)]
-    made = [explorer.identifier(name) for name in every]
+def test_the_page_clamps_as_the_exported_functions_do():
+    # α and θf below the domain of the table are clamped for c₀ … c₅, but not in u·t.
+    owner, entry = problem("ps"), resolve("published/ps")
+    below, at_end = np.array([[0.05, 0.5, 0.3, 1.0], [0.15, 0.5, 0.3, 1.0]])
+    values = in_node([owner], {"ps": np.array([below, at_end])})["ps"]["published/ps"]
+    assert values[0] == values[1] == pytest.approx(exported_values(entry, below[None])[0])
+
+
+def test_every_table_has_a_function_of_its_own():
+    every = [entry for owner in problems().values() for entry in entries(owner)]
+    made = [explorer.identifier(entry) for entry in every]
     assert len(set(made)) == len(every)
-    assert set(made) < explorer.functions().keys()
-    assert explorer.identifier("published/ps@printed") == "publishedPsPrinted"
-    assert explorer.identifier("best/g-exp_9.2") == "bestGExp92"
+    owner = problem("g")
+    assert explorer.identifier(resolve("published/ps@printed")) == "publishedPsPrinted"
+    assert explorer.identifier(Entry("best/g-exp_9.2", "best", owner)) == "bestGExp92"
+
+
+X = Axis("x", "x", "1", 0.0, np.inf, "an argument")
+
+
+@pytest.fixture
+def tables_only():
+    """Register a quantity that has a form but no closed form that can be printed."""
+
+    @leg(X)
+    def quadrature(x):
+        return Estimate(jnp.cos(x), jnp.array(1e-15))
+
+    reference = Reference(
+        "new", "N_w", "a new quantity", "cos x", (X,), Sampling(5, 6, 7), quadrature=quadrature
+    )
+    axes = (replace(X, upper=0.75),)
+    form = Form("line", "1 + c x", reference, axes, ["c"], (Stage(lambda c, x: 1 + c[0] * x),))
+    calling = CallingConvention("New", "A line.", (Argument("x", "x", "above"),))
+    yield register(Problem(reference, form, calling))
+    unregister("new")
+
+
+def test_a_registered_quantity_is_explored_as_far_as_it_can_be_evaluated(tables_only, monkeypatch):
+    assert tables_only not in explorer.explored()
+    fitted = tables_only.default.fitted(np.array([-0.25]))
+    # Any table will do: the page takes its values from the fitted form.
+    entry = Entry("best/new-1", "best", tables_only, resolve("q").table, fitted)
+    monkeypatch.setattr(explorer, "entries", lambda owner: [entry])
+    assert tables_only in explorer.explored()
+    _, known = explorer.functions_and_data([tables_only])
+    ((axis,),) = [each["axes"] for each in known["quantities"]]
+    assert (axis["low"], axis["high"], axis["start"]) == (0.0, 1.0, 0.5)
+    values = in_node([tables_only], {"new": np.array([[0.5], [1.0]])})["new"]
+    assert values == {"exact": [None, None], "best/new-1": [0.875, 0.8125]}
 
 
 @pytest.fixture(scope="module")
-def script() -> str:
+def script(few_tables) -> str:
     return explorer.script()
 
 
 def test_the_script_cannot_end_its_element(script):
-    text = script
-    assert "</" not in text
-    assert text.startswith('"use strict";')
-    assert re.search(r"NaN|Infinity", text.split("const known = ")[1].split("\n")[0]) is None
+    assert "</" not in script
+    assert script.startswith('"use strict";')
+    assert re.search(r"NaN|Infinity", script.split("const known = ")[1].split("\n")[0]) is None
 
 
 @pytest.fixture(scope="module")
@@ -173,7 +249,7 @@ def choose(page, quantity):
 
 
 def enter(page, quantity, place):
-    for axis, value in zip(INTEGRALS[quantity].axes, place, strict=True):
+    for axis, value in zip(problem(quantity).axes, place, strict=True):
         page.fill(f"#enter-{axis.name}", str(value))
 
 
@@ -183,46 +259,48 @@ def values(page):
 
 
 def curves(page):
-    """Wait until what was asked for is drawn; give every path of the upper chart."""
+    """Wait until the page has drawn, and return every path of the upper chart."""
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
     paths = page.locator("#values-chart path").all()
     return [path.get_attribute("d") for path in paths]
 
 
 def mark_of(page):
-    """Give where the place explored is marked on the upper chart."""
+    """Return the x at which the upper chart marks the explored place."""
     return float(page.locator("#values-chart .mark").get_attribute("x1"))
 
 
-def test_the_numbers_shown_are_pythons(page):
+def test_the_numbers_shown_are_those_of_python(page):
     for quantity, places in PLACES.items():
         choose(page, quantity)
         for index, place in enumerate(places):
             enter(page, quantity, place)
             shown = values(page)
-            assert set(shown) == {"exact", *some_tables(quantity)}
+            tables = {entry.name for entry in some_tables(problem(quantity))}
+            assert set(shown) == {"exact", *tables}
             for name, (value, error) in shown.items():
                 expected = in_python(quantity, name)[index]
-                if expected is None:
-                    assert value == "—"
-                    assert error.endswith("outside its domain")
-                else:
-                    assert float(value) == pytest.approx(expected, abs=SHOWN)
+                assert float(value) == pytest.approx(expected, abs=SHOWN)
+                if name == "exact":
+                    continue
+                inside = not outside(quantity, name, own_units(quantity)[index])
+                assert error.endswith("outside its domain") == (not inside)
 
 
 def test_moving_a_slider_changes_the_plot(page):
     for quantity in PLACES:
         choose(page, quantity)
         before, numbers, mark = curves(page), values(page), mark_of(page)
-        first = INTEGRALS[quantity].axes[0].name
+        first = problem(quantity).axes[0].name
         page.focus(f"#slide-{first}")
         for _ in range(4):
             page.keyboard.press("ArrowRight")
         after = curves(page)
-        assert len(after) == len(before) == 3
+        drawn = page.locator("#values input:checked").count()
+        assert len(after) == len(before) == 1 + drawn
         assert values(page)["exact"] != numbers["exact"]
-        # The curve of Q is drawn against its only argument: there the mark moves instead.
-        if quantity == "q":
+        # The curves of a quantity of one axis stay, and the mark moves along them.
+        if len(problem(quantity).axes) == 1:
             assert after == before
             assert mark_of(page) > mark
         else:
@@ -243,11 +321,11 @@ def test_the_discs_follow_the_material(page):
     page.fill("#enter-alpha", "0.2")
     after = drawn()
     assert all(a != b for a, b in zip(after, before, strict=True))
-    # Below the domain of the tables, their discs are empty.
+    # Below the domain of the tables the exported functions clamp α, and the exact values differ.
     page.fill("#enter-alpha", "0.1")
-    empty = drawn()
-    assert empty[0] != after[0]
-    assert empty[1] == empty[2]
+    below = drawn()
+    assert all(a != b for a, b in zip(below, after, strict=True))
+    assert len(set(below)) == 3
     choose(page, "g")
     assert page.locator("#discs").is_hidden()
 
@@ -275,7 +353,7 @@ def test_what_is_out_of_range_is_marked_and_not_taken(page):
 
 def test_a_curve_can_be_drawn_against_any_argument(page):
     seen = set()
-    for axis in INTEGRALS["ps"].axes:
+    for axis in problem("ps").axes:
         page.select_option("#against", axis.name)
         seen.add(curves(page)[0])
         label = page.locator("#values-chart svg").get_attribute("aria-label")

@@ -1,4 +1,4 @@
-"""Pictures: what is drawn is what the tables and integrals say, and drawn the same each time."""
+"""Pictures: they show what the tables and references say, and are the same bytes each time."""
 
 import io
 import re
@@ -7,25 +7,67 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from coefficients.catalogue import form_of, load
+from coefficients.catalogue import entries, resolve
 from coefficients.compare import compare
-from integrals import PS
+from coefficients.exported_code import exported_values
+from coefficients.frontier import Mark, best_so_far, marks
+from coefficients.search import Found, Result
+from fitting import Form, Stage
+from integrals.reference import Axis, Estimate, Reference, leg
+from integrals.sampling import Sampling
+from quantities import Problem, problem, problems, register
+from quantities.calling_convention import Argument, CallingConvention
+from quantities.problem import AxisHint, PlotHints
+from quantities.registry import unregister
 from shadefit.cli import main
-from shadefit.figures import PICTURES, frontier, render, run
-from shadefit.figures.frontier import Mark, best_so_far, marks
-from shadefit.figures.materials import EXCHANGED, PRINTED, TABLES, ps_errors, ps_rows
+from shadefit.figures import curves, frontier, pictures, render, search
+from shadefit.figures.fuzz_pictures import DRAWN
+from shadefit.figures.ps_materials import BEST, EXCHANGED, PRINTED, TABLES, ps_errors, ps_rows
 from shadefit.figures.style import COLOURS, DASHES, MARKERS
-from shadefit.figures.values import exact, exported, kind_of, mesh, quantities, tables_of
+from shadefit.figures.values import axis_hints, compared_values, exact, mesh
 
 DOCS = Path(__file__).parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
 SLOW = pytest.mark.slow
+X = Axis("x", "x", "1", 0.0, np.inf, "first argument")
+ANGLE = Axis("turn", "φ", "rad", 0.0, np.pi, "second argument", open_below=True)
 rng = np.random.default_rng(6)
+
+
+def new_problem(*axes, name="new", plot=None):
+    """Return a quantity that has neither kept tables nor, by default, plot hints."""
+
+    @leg(*axes)
+    def closed_form(*point):
+        return Estimate(jnp.cos(sum(point)), jnp.array(1e-15))
+
+    reference = Reference(
+        name, "N_w", "a new quantity", "cos(x + …)", axes, Sampling(5, 6, 7), closed_form
+    )
+    stage = Stage(lambda c, *point: 1 + c[0] * sum(point))
+    form = Form("line", "1 + c x", reference, axes, ["c"], (stage,))
+    arguments = tuple(Argument(axis.name, axis.name) for axis in axes)
+    return Problem(reference, form, CallingConvention("New", "A line.", arguments), plot=plot)
+
+
+@pytest.fixture
+def registered():
+    """Return a function that registers a quantity until the test ends."""
+    added = []
+
+    def add(owner):
+        added.append(owner)
+        return register(owner)
+
+    yield add
+    for owner in added:
+        unregister(owner.name)
 
 
 def points_of(form, count=300):
@@ -35,39 +77,38 @@ def points_of(form, count=300):
 
 @pytest.mark.parametrize("name", ["published/ps", "g", "r"])
 def test_exported_values_are_the_form_inside_its_domain(name):
-    form = form_of(load(name))
-    points = points_of(type(form))
-    expected = jax.vmap(lambda x: form(*x))(points)
-    np.testing.assert_allclose(exported(name, points), expected, atol=1e-13)
+    entry = resolve(name)
+    fitted = entry.require_fitted()
+    points = points_of(fitted.form)
+    expected = jax.vmap(lambda x: fitted(*x))(points)
+    np.testing.assert_allclose(exported_values(entry, points), expected, atol=1e-13)
 
 
 def test_exported_values_of_an_upright_fibre_are_those_of_the_clamped_material():
-    # Figures 1 to 4 show θf = 0, which the listing clamps to 0.1 for c₀ … c₅ but not in u·t.
-    form = form_of(load("published/ps"))
-    c = np.asarray(form.material(0.35, 0.1))
+    # Figures 1 to 4 show θf = 0. The listing clamps it to 0.1 for c₀ … c₅, but not in u·t.
+    entry = resolve("published/ps")
+    c = np.asarray(entry.require_fitted().first(0.35, 0.1))
     theta_u = np.linspace(0, np.pi / 2, 9)
     points = np.stack([np.full(9, 0.35), np.zeros(9), theta_u, np.ones(9)], axis=-1)
     n = t = np.cos(theta_u)
     expected = c @ np.stack([n**0, n, t, n * n, n * t, t * t])
-    np.testing.assert_allclose(exported("published/ps", points), expected, atol=1e-14)
+    np.testing.assert_allclose(exported_values(entry, points), expected, atol=1e-14)
 
 
 def test_values_keep_the_shape_of_their_points():
     points = mesh(np.linspace(0.2, 1, 3), np.linspace(0.2, 1.5, 4))
     assert points.shape == (3, 4, 2)
-    assert exported("r", points).shape == (3, 4)
-    assert exported("r", points)[2, 1] == exported("r", points[2, 1][None])[0]
+    values = compared_values(problem("r"), points)
+    assert list(values) == ["exact", "published", "refitted"]
+    assert {each.shape for each in values.values()} == {(3, 4)}
+    one = exported_values(resolve("r"), points[2, 1][None])
+    assert values["refitted"][2, 1] == one[0]
 
 
-def test_tables_are_listed_with_what_they_are():
-    assert quantities() == ["ps", "g", "q", "r"]
-    assert tables_of("ps")[:3] == ["published/ps@printed", "published/ps", "ps"]
-    assert [kind_of(name) for name in tables_of("ps")[:3]] == ["printed", "published", "refitted"]
-    assert kind_of("best/ps-9") == "best"
-    for quantity in quantities():
-        for name in tables_of(quantity):
-            assert load(name).quantity == quantity
-            assert kind_of(name) in COLOURS.keys() & DASHES.keys() & MARKERS.keys()
+def test_every_kind_of_table_has_a_style():
+    for owner in problems().values():
+        for entry in entries(owner):
+            assert entry.kind in COLOURS.keys() & DASHES.keys() & MARKERS.keys()
 
 
 def test_no_two_kinds_share_a_colour_a_dash_or_a_marker():
@@ -79,24 +120,26 @@ def test_no_two_kinds_share_a_colour_a_dash_or_a_marker():
     "quantity", ["q", *(pytest.param(name, marks=SLOW) for name in ("ps", "g", "r"))]
 )
 def test_every_table_has_its_mark(quantity):
-    found = {mark.name: mark for mark in marks(quantity)}
-    exact = set() if quantity == "r" else {"closed form"}
-    assert set(found) == {*tables_of(quantity)} | exact
+    owner = problem(quantity)
+    found = {mark.name: mark for mark in marks(owner)}
+    closed_form = set() if owner.exact_code is None else {"closed form"}
+    assert set(found) == {entry.name for entry in entries(owner)} | closed_form
     published = f"published/{quantity}"
-    entries = compare([(name, load(name)) for name in (published, quantity)]).entries
-    for entry in entries:
-        mark = found[entry.label]
-        assert (mark.largest, mark.rms) == (entry.errors.largest, entry.errors.rms)
-    # As listed: FuzzPs, FuzzGApprox, FuzzAveragePenetration (two products, two sums, a clamp).
+    compared = compare([(name, resolve(name)) for name in (published, quantity)])
+    for each in compared.contestants:
+        mark = found[each.label]
+        assert (mark.largest, mark.rms) == (each.errors.largest, each.errors.rms)
+    # The operations of the listings' functions FuzzPs, FuzzGApprox, FuzzAveragePenetration (two
+    # products, two sums, a clamp) and FuzzAveragePs.
     assert found[published].operations == {"ps": 13, "g": 12, "q": 5, "r": 53}[quantity]
-    if quantity == "r":
+    if not closed_form:
         return
-    # The closed form costs more and errs by rounding alone: a few units of float32.
+    # The closed form costs more, and has only the rounding error of float32.
     assert found["closed form"].operations > max(m.operations for m in found.values()) / 2
     assert 0 < found["closed form"].largest < 16 * np.finfo(np.float32).eps
 
 
-def test_the_frontier_is_what_nothing_beats():
+def test_the_frontier_has_the_marks_that_no_other_beats():
     every = tuple(
         Mark(f"m{i}", "best", int(cost), float(error), 0.0)
         for i, (cost, error) in enumerate(zip(rng.integers(1, 9, 40), rng.random(40), strict=True))
@@ -120,12 +163,12 @@ def test_labels_of_the_frontier_do_not_cover_each_other(monkeypatch):
         Mark(f"best/form-{i}", "best", int(cost), float(error), 0.0)
         for i, (cost, error) in enumerate(zip(costs, errors, strict=True))
     )
-    monkeypatch.setattr(frontier, "marks", lambda quantity: crowd)
-    monkeypatch.setattr(frontier, "quantities", lambda: ["g"])
+    monkeypatch.setattr(frontier, "marks", lambda owner: crowd)
+    monkeypatch.setattr(frontier, "problems", lambda: {"g": problem("g")})
     figure = frontier.draw_frontier()
     figure.draw_without_rendering()
     panel = figure.axes[0]
-    # Of the words alone: an annotation's own box takes in its line.
+    # The boxes of the words: the box of a whole annotation contains its line, too.
     boxes = [Text.get_window_extent(text) for text in panel.texts]
     assert len(boxes) == len(crowd)
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
@@ -133,18 +176,18 @@ def test_labels_of_the_frontier_do_not_cover_each_other(monkeypatch):
 
 def test_rows_show_the_exchange():
     alphas, _, rows = ps_rows(9)
-    best = rows["best in each cell"]
+    best = rows[BEST]
     assert best.shape == (9, 9, 6)
     printed, corrected = rows["published, as printed"], rows["published, rows exchanged"]
     first, second = EXCHANGED
     np.testing.assert_array_equal(printed[..., first], corrected[..., second])
     np.testing.assert_array_equal(printed[..., second], corrected[..., first])
-    # Away from α = 0.15, where least squares in a cell and a smooth fit part.
+    # Near α = 0.15 the best coefficients of one material differ from any smooth fit.
     inner = alphas > 0.3
     for row in EXCHANGED:
         right = np.abs(corrected - best)[inner, :, row].max()
         assert right < 0.2 * np.abs(printed - best)[inner, :, row].max()
-    # By symmetry of the integral, (u·n)(u·t) has no part in it where the fibre lies flat.
+    # Where the fibre lies flat, P_s is even in u·t: the coefficient of (u·n)(u·t) is zero.
     np.testing.assert_allclose(best[:, -1, 4], 0, atol=1e-10)
 
 
@@ -152,19 +195,21 @@ def test_errors_by_material_are_those_of_the_lights():
     alphas, tilts, errors = ps_errors(5, 6)
     assert list(errors) == list(TABLES)
     printed, corrected = (errors[label] for label in list(TABLES)[:2])
-    # P_s is ½ at α = 1 in every table: both are the same there.
+    # At α = 1 every table gives P_s = ½, so that both tables are the same.
     assert printed[0][-1].max() < 1e-12
     assert np.mean(printed[0]) > 3 * np.mean(corrected[0])
     rms, largest = printed
     assert np.all(rms <= largest)
     lights = mesh(np.linspace(0.05, 1.5, 12), np.linspace(0, np.pi, 12)).reshape(-1, 2)
     points = np.concatenate([np.tile([alphas[1], tilts[3]], (144, 1)), lights], axis=1)
-    apart = np.abs(exported(PRINTED, points) - exact(PS, points))
+    apart = np.abs(
+        exported_values(resolve(PRINTED), points) - exact(problem("ps").reference, points)
+    )
     assert largest[1, 3] == pytest.approx(apart.max(), rel=0.2)
 
 
 def test_a_picture_is_the_same_bytes_each_time():
-    first, second = (render(PICTURES["figure-6"].draw) for _ in range(2))
+    first, second = (render(pictures()["figure-6"].draw) for _ in range(2))
     assert first == second
     assert first["png"][:8] == b"\x89PNG\r\n\x1a\n"
     root = ElementTree.parse(io.BytesIO(first["svg"])).getroot()
@@ -181,20 +226,91 @@ def test_the_style_stays_inside_its_pictures():
 
 
 def test_named_pictures_are_written_and_others_refused(tmp_path, capsys):
-    run(["figure-6"], tmp_path)
+    assert main_status("figures", "figure-6", "--out", str(tmp_path)) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-6.png", "figure-6.svg"]
-    with pytest.raises(ValueError, match=r"no figure is called 'figure-8': allowed are ps, fig"):
-        run(["figure-6", "figure-8"], tmp_path / "none")
+    capsys.readouterr()
+    assert main_status("figures", "figure-6", "Ps", "--out", str(tmp_path / "none")) == 2
     assert not (tmp_path / "none").exists()
+    said = capsys.readouterr().err
+    assert said.startswith("shadefit: no figure is called 'Ps': allowed are ps, fig")
+
+
+def main_status(*arguments):
     with pytest.raises(SystemExit) as stopped:
-        main(["figures", "Ps", "--out", str(tmp_path / "none")])
-    assert stopped.value.code == 2
-    assert capsys.readouterr().err.startswith("shadefit: no figure is called 'Ps'")
+        main(list(arguments))
+    return stopped.value.code or 0
+
+
+def test_pictures_are_declared_for_the_quantities_of_the_package():
+    assert set(DRAWN) == set(problems().values())
+
+
+@pytest.mark.parametrize("axes", [(X,), (X, ANGLE)])
+def test_a_registered_quantity_is_drawn_without_more_code(registered, axes):
+    known = set(pictures())
+    registered(new_problem(*axes))
+    assert set(pictures()) == known | {"errors-new"}
+    picture = pictures()["errors-new"]
+    assert picture.title == "Errors of N_w"
+    # There are no tables to draw: only the exact values.
+    assert len(picture.draw().axes) == len(axes)
+    assert render(picture.draw)["svg"]
+
+
+def test_a_quantity_has_a_panel_of_the_frontier_if_it_has_marks_to_compare(registered, monkeypatch):
+    owner = registered(new_problem(X))
+    assert marks(owner) == ()
+    two = tuple(Mark(f"best/n-{i}", "best", 5 + i, 0.1 / (1 + i), 0.01) for i in range(2))
+    few = {"q": two[:1], "new": two}
+    monkeypatch.setattr(frontier, "problems", lambda: {"q": problem("q"), "new": owner})
+    monkeypatch.setattr(frontier, "marks", lambda owner: few[owner.name])
+    panels = [axes for axes in frontier.draw_frontier().axes if axes.get_visible()]
+    assert [axes.get_title() for axes in panels] == ["$N_w$"]
+
+
+def test_pictures_follow_the_hints(registered):
+    hint = AxisHint("$x$", 1.0, 100.0, 2.0, logarithmic=True, factor=2.0, unit="mm")
+    plot = PlotHints({"x": hint}, values=(-1.0, 1.0), value_label="N", exact_label="cosine")
+    registered(new_problem(X, plot=plot))
+    (axes,) = pictures()["errors-new"].draw().axes
+    assert axes.get_xlabel() == "$x$ / mm"
+    assert axes.get_ylabel() == "N"
+    assert axes.get_xscale() == "log"
+    assert axes.get_xlim() == (2.0, 200.0)
+    assert axes.get_ylim() == pytest.approx((-1.0, 1.06))
+    (curve,) = axes.get_lines()
+    x, y = np.array(curve.get_data(), float)
+    np.testing.assert_allclose(y, np.cos(x / 2), atol=1e-12)
+
+
+def test_tables_of_a_quantity_are_drawn_when_they_are_kept():
+    # r(k) has one axis, and a refitted table but no published one.
+    owner = problem("velvet")
+    assert list(compared_values(owner, np.array([[-0.5]]))) == ["exact", "refitted"]
+    above, below = curves.draw_curves(owner).axes
+    assert len(above.get_lines()) == 2
+    errors = below.get_lines()[1].get_ydata()
+    assert np.max(errors) <= 0
+
+
+def test_axes_without_hints_are_drawn_over_their_finite_domain():
+    (_, first), (_, second) = axis_hints(new_problem(X, ANGLE))
+    assert (first.lower, first.upper) == (0.0, 1.0)
+    assert second.lower == pytest.approx(np.pi / 1000)
+    assert (second.upper * second.factor, second.unit) == (pytest.approx(180), "°")
+    assert second.lower < second.start < second.upper
+
+
+def test_a_search_is_drawn_without_a_published_table_too():
+    found = [Found(f"f{i}", "line", 1, 4 + i, 0.01, 0.1 / (1 + i), "") for i in range(3)]
+    for published in (None, found[0]):
+        drawn = search.draw(problem("q"), Result(found, found[:2], published, [], 0))
+        assert set(drawn) == {"png", "svg"}
 
 
 def test_the_gallery_shows_every_picture():
     text = (DOCS / "gallery.md").read_text(encoding="utf-8")
-    for name, picture in PICTURES.items():
+    for name, picture in pictures().items():
         assert f"(figures/{name}.png)" in text
         assert f"(figures/{name}.svg)" in text
         assert picture.title in text
@@ -204,7 +320,7 @@ def test_the_gallery_shows_every_picture():
 
 def test_committed_pictures_are_small_and_can_be_read():
     total = 0
-    for name in PICTURES:
+    for name in pictures():
         png = (DOCS / "figures" / f"{name}.png").read_bytes()
         width, height = struct.unpack(">II", png[16:24])
         assert 500 <= width <= 1300
@@ -216,6 +332,6 @@ def test_committed_pictures_are_small_and_can_be_read():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize("name", pictures())
 def test_every_picture_is_drawn_the_same_twice(name):
-    assert render(PICTURES[name].draw) == render(PICTURES[name].draw)
+    assert render(pictures()[name].draw) == render(pictures()[name].draw)

@@ -1,6 +1,7 @@
-"""Rendering: files that others read, light that adds up, and refusals that say why."""
+"""The renderer: its functions, light and scenes, the files that it writes, and bad settings."""
 
 import io
+import itertools
 import json
 import struct
 import zlib
@@ -11,18 +12,80 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from integrals import G
+import integrals
+from coefficients.catalogue import entries
+from coefficients.exported_code import exported_values
+from quantities.fuzz import PS, G, Q, R
 from shadefit.cli import main
-from shadefit.render.compare import Settings, image, run
+from shadefit.commands.render import run
+from shadefit.render.exr import write_exr
 from shadefit.render.fibers import azimuths
-from shadefit.render.functions import table_sets
-from shadefit.render.images import colour, from_srgb, srgb, write_exr
+from shadefit.render.functions import CHOICES, EXACT, table_sets
+from shadefit.render.image import render_image
 from shadefit.render.scenes import SCENES, cloth_height
-from shadefit.render.shade import _ROOTS, BACKDROP, sky_coefficients, tabulated
+from shadefit.render.settings import Settings
+from shadefit.render.shade import _ROOTS, BACKDROP, interpolated_g, sky_coefficients
 from shadefit.render.sheet import round_up
+from shadefit.render.srgb import from_srgb, parse_colour, to_srgb
 from shading import irradiance, radiance
 
 SIZE = 16
+# Points inside the domains of the tables, at their ends, and outside, where clamps act.
+ALPHAS, TILTS = (0.01, 0.15, 0.35, 1.0), (0.0, 0.05, 0.4, np.pi / 2)
+POLAR_ANGLES, AZIMUTHS = (0.0, 0.7, 1.5, np.pi / 2), (0.0, 1.0, np.pi)
+DENSITIES, COSINES = (0.0, 1e-4, 0.2, 0.5, 0.8), (1e-9, 1e-4, 0.01, 0.5, 1.0)
+
+
+def combinations(*axes):
+    return np.array(list(itertools.product(*axes)))
+
+
+def at_rows(function, rows):
+    """Evaluate a function of scalars at each row of an array."""
+    return jax.jit(jax.vmap(lambda row: function(*row)))(rows)
+
+
+def functions_of(name):
+    (found,) = (each for each in table_sets() if each.name == name)
+    return found
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_rendered_tables_are_the_exported_code(name):
+    functions = functions_of(name)
+    ps, g, q, r = (CHOICES[name](owner) for owner in (PS, G, Q, R))
+    points = combinations(ALPHAS, TILTS, POLAR_ANGLES, AZIMUTHS)
+    _, cosines = ps.arguments_at(points)
+    rows = np.column_stack([cosines, np.cos(points[:, 1]), points[:, :2]])
+    close(at_rows(functions.ps, rows), exported_values(ps, points))
+    points = combinations(DENSITIES, COSINES)
+    close(at_rows(functions.g, points), exported_values(g, points))
+    points = combinations(DENSITIES)
+    close(at_rows(functions.q, points), exported_values(q, points))
+    points = combinations(ALPHAS, TILTS)
+    close(at_rows(functions.r, points), exported_values(r, points))
+
+
+def close(rendered, exported):
+    """Assert equality but for the rounding of float64, which compilation may change."""
+    assert np.all(np.isfinite(exported))
+    np.testing.assert_allclose(rendered, exported, rtol=1e-10, atol=1e-12)
+
+
+def test_published_g_is_zero_without_a_layer():
+    assert functions_of("published").g(0.0, 0.01) == 0
+
+
+@pytest.mark.parametrize("owner", [PS, G, Q, R], ids=lambda owner: owner.name)
+def test_the_best_table_has_the_least_rms_error(owner):
+    def rms(entry):
+        return entry.table.errors.off_grid.rms
+
+    chosen = CHOICES["best"](owner)
+    others = [entry for entry in entries(owner) if entry.kind == "best"]
+    assert len(others) > 1
+    assert chosen in others
+    assert all(rms(chosen) <= rms(entry) for entry in others)
 
 
 def cloth(x, y):
@@ -35,7 +98,7 @@ def channels(names, height=3, width=5) -> dict[str, np.ndarray]:
 
 
 def read_exr(data: bytes) -> dict[str, np.ndarray]:
-    """Read what is written here: scan lines of 32-bit floats, not compressed."""
+    """Read a file of `write_exr`: scan lines of 32-bit floats without compression."""
     assert struct.unpack_from("<2i", data) == (20000630, 2)
     attributes, at = {}, 8
     while data[at]:
@@ -68,7 +131,7 @@ def test_an_exr_file_is_read_back_bit_for_bit():
         np.testing.assert_array_equal(read[name], values.astype(np.float32))
 
 
-def test_openexr_reads_it_too(tmp_path):
+def test_the_openexr_library_reads_the_file(tmp_path):
     library = pytest.importorskip("OpenEXR")
     written, path = channels(["R", "G", "B"]), tmp_path / "image.exr"
     path.write_bytes(write_exr(written))
@@ -77,24 +140,24 @@ def test_openexr_reads_it_too(tmp_path):
     np.testing.assert_array_equal(pixels, expected)
 
 
-def test_srgb_is_the_standard_up_to_its_shoulder():
+def test_srgb_follows_the_standard_up_to_its_shoulder():
     np.testing.assert_allclose(
-        srgb(np.array([0.0, 0.0031308, 0.2140411])), [0, 0.04045, 0.5], atol=1e-4
+        to_srgb(np.array([0.0, 0.0031308, 0.2140411])), [0, 0.04045, 0.5], atol=1e-4
     )
     x = np.linspace(0, 0.8, 50)
-    np.testing.assert_allclose(from_srgb(srgb(x)), x, atol=1e-7)
-    assert np.all(np.diff(srgb(np.linspace(0, 5, 200))) > 0)
-    assert srgb(np.array([1e9])) <= 1
+    np.testing.assert_allclose(from_srgb(to_srgb(x)), x, atol=1e-7)
+    assert np.all(np.diff(to_srgb(np.linspace(0, 5, 200))) > 0)
+    assert to_srgb(np.array([1e9])) <= 1
 
 
 def test_colours_are_read_or_refused():
-    np.testing.assert_allclose(colour("#ff0080", "fiber"), (1, 0, 0.2158605), atol=1e-6)
+    np.testing.assert_allclose(parse_colour("#ff0080", "fiber"), (1, 0, 0.2158605), atol=1e-6)
     for text in ("#ff00", "red", "#gg0000", "", "#1234567"):
         with pytest.raises(ValueError, match="fiber is"):
-            colour(text, "fiber")
+            parse_colour(text, "fiber")
 
 
-def test_the_sky_is_its_three_colours():
+def test_the_sky_has_its_three_colours():
     light = sky_coefficients()
     for height, expected in ((1.0, (0.55, 0.70, 1.0)), (0.0, (0.95, 0.92, 0.88))):
         at = np.array([np.sqrt(1 - height**2), 0.0, height])
@@ -104,16 +167,16 @@ def test_the_sky_is_its_three_colours():
 
 
 @pytest.mark.slow
-def test_the_tabulated_g_is_g_to_what_an_image_can_show():
+def test_interpolated_g_has_no_visible_error():
     roots = np.linspace(_ROOTS[0], 1, 3001)
-    exact = jax.jit(jax.vmap(G.value, (None, 0)))
+    exact = jax.jit(jax.vmap(integrals.G.value, (None, 0)))
     for density in (0.01, 0.5):
-        between = jax.vmap(tabulated, (None, 0))(exact(density, _ROOTS**2), roots**2)
+        between = jax.vmap(interpolated_g, (None, 0))(exact(density, _ROOTS**2), roots**2)
         np.testing.assert_allclose(between, exact(density, roots**2), atol=1e-5)
 
 
 @pytest.mark.parametrize("scene", ["sphere", pytest.param("cloth", marks=pytest.mark.slow)])
-def test_what_is_seen_lies_on_the_surface(scene):
+def test_visible_points_lie_on_the_surface(scene):
     hits = SCENES[scene].hits(SIZE)
     seen = np.asarray(hits.seen)
     p, n = np.asarray(hits.position)[seen], np.asarray(hits.normal)[seen]
@@ -131,9 +194,9 @@ def test_what_is_seen_lies_on_the_surface(scene):
 
 @pytest.mark.slow
 def test_without_a_layer_the_sphere_is_lambertian():
-    """Density 0: base (E_sun max(u·n, 0) + E_sky)/π, whatever the tables."""
+    """At density 0 the radiance is base (E_sun max(u·n, 0) + E_sky)/π."""
     settings = Settings(density=0.0, size=SIZE, fibers="even")
-    rendered = image("sphere", settings, "exact")
+    rendered = render_image(SCENES["sphere"], settings, EXACT)
     hits, light = SCENES["sphere"].hits(2 * SIZE), settings.light
     normal = np.asarray(hits.normal)
     sun = np.maximum(normal @ light.direction, 0)[:, None] * light.sun * np.array([1.0, 0.93, 0.82])
@@ -141,20 +204,21 @@ def test_without_a_layer_the_sphere_is_lambertian():
     expected = np.array(settings.material.base) / np.pi * (sun + np.asarray(sky))
     expected = np.where(np.asarray(hits.seen)[:, None], expected, BACKDROP)
     expected = expected.reshape(SIZE, 2, SIZE, 2, 3).mean((1, 3))
-    # The least cosine of the view moves nothing here; that of the light, 0.001 of the sun.
+    # The least cosine of the light changes only samples that the sun lights at a grazing angle.
     np.testing.assert_allclose(rendered, expected, atol=1e-6)
 
 
 @pytest.mark.slow
 def test_tables_are_hard_to_tell_from_exact_functions():
     settings = Settings(size=SIZE)
-    exact = image("sphere", settings, "exact")
-    assert {"published", "refitted"} <= set(table_sets())
-    difference = np.abs(image("sphere", settings, "published") - exact)
+    exact = render_image(SCENES["sphere"], settings, EXACT)
+    published, *others = table_sets()
+    assert [each.name for each in (published, *others)] == ["published", "refitted", "best"]
+    difference = np.abs(render_image(SCENES["sphere"], settings, published) - exact)
     assert 1e-5 < difference.max() < 0.05
 
 
-def test_a_map_of_fibres_is_followed(tmp_path):
+def test_fibres_lean_as_a_map_says(tmp_path):
     path = tmp_path / "map.png"
     pixels = np.zeros((4, 4, 3), np.uint8)
     pixels[..., 0], pixels[..., 1] = 128, 255
@@ -168,7 +232,7 @@ def test_a_map_of_fibres_is_followed(tmp_path):
 
 
 @pytest.mark.parametrize("content", [None, b"no image", b"grey"])
-def test_a_map_that_is_none_is_refused(tmp_path, content):
+def test_a_file_that_is_no_map_is_refused(tmp_path, content):
     path = tmp_path / "map.png"
     if content == b"grey":
         buffer = io.BytesIO()
@@ -209,7 +273,7 @@ def test_a_map_of_too_many_pixels_is_refused_before_they_are_read(tmp_path, size
 def test_bad_settings_are_refused_by_name(tmp_path, change):
     (name,) = change
     with pytest.raises(ValueError, match=name):
-        run([], Settings(**change), tmp_path / "out", sweep=False, as_json=False)
+        run([], Settings(**change), tmp_path / "out", sweep=False, json=False)
     assert not (tmp_path / "out").exists()
 
 
@@ -220,7 +284,7 @@ def test_the_command_writes_both_files(tmp_path, capsys):
         main(arguments)
     assert stopped.value.code == 0
     record = json.loads(capsys.readouterr().out)
-    assert {row["tables"] for row in record["images"]} == set(table_sets())
+    assert {row["tables"] for row in record["images"]} == {each.name for each in table_sets()}
     assert (tmp_path / "render.png").read_bytes().startswith(b"\x89PNG")
     read = read_exr((tmp_path / "render.exr").read_bytes())
     np.testing.assert_array_equal(read["R"], read["sphere.exact.R"])
@@ -235,7 +299,7 @@ def test_the_command_writes_both_files(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_sweep_is_drawn(tmp_path):
-    run(["sphere"], Settings(size=SIZE), tmp_path, sweep=True, as_json=False)
+    run(["sphere"], Settings(size=SIZE), tmp_path, sweep=True, json=False)
     with Image.open(tmp_path / "sweep.png") as sheet:
         assert sheet.size[0] > 400
 

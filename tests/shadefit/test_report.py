@@ -1,4 +1,4 @@
-"""The report: one file that needs nothing else, and what it says of the tables."""
+"""The report: one file that loads nothing, and its tables of errors, errata and origins."""
 
 import re
 import struct
@@ -7,15 +7,14 @@ from html.parser import HTMLParser
 
 import pytest
 
-from coefficients.catalogue import load, names
-from coefficients.proven import proven
+from coefficients.catalogue import entries, resolve, with_published
+from coefficients.frontier import Mark
+from coefficients.proof_text import proof_text
 from coefficients.table import Table
+from quantities import problem
 from shadefit.cli import main
-from shadefit.figures import PICTURES
-from shadefit.figures.frontier import Mark
-from shadefit.figures.values import quantities
-from shadefit.report import page as report
-from shadefit.report import sections as report_tables
+from shadefit.figures import pictures
+from shadefit.report import page, sections
 
 
 def png(width=3, height=2):
@@ -62,13 +61,9 @@ class Outline(HTMLParser):
 def assembled():
     with pytest.MonkeyPatch.context() as patch:
         # The explorer's script has tests of its own.
-        patch.setattr(report, "script", lambda: "if (1 < 2) { }")
-        yield _assembled()
-
-
-def _assembled():
-    figure = report._figure("frontier", png())
-    return report.assemble("", figure, report_tables.errata(), report_tables.provenance())
+        patch.setattr(page, "script", lambda: "if (1 < 2) { }")
+        figure = page.figure("frontier", pictures()["frontier"], png())
+        yield page.assemble("", figure, sections.errata(), sections.provenance())
 
 
 def test_the_page_is_well_formed_and_self_contained(assembled):
@@ -83,8 +78,9 @@ def test_the_page_is_well_formed_and_self_contained(assembled):
 
 
 def test_pictures_have_their_captions_and_widths():
-    figure = report._figure("errors-g", png(width=7))
-    caption = PICTURES["errors-g"].caption
+    picture = pictures()["errors-g"]
+    figure = page.figure("errors-g", picture, png(width=7))
+    caption = picture.caption
     assert f'alt="{caption}" width="7"' in figure
     assert f"<figcaption>{caption}</figcaption>" in figure
 
@@ -95,8 +91,8 @@ def test_the_summary_says_what_was_measured(monkeypatch):
         Mark("q", "refitted", 5, 0.03, 0.004),
         Mark("closed form", "exact", 700, 2.5e-7, 3.5e-8),
     )
-    monkeypatch.setattr(report_tables, "marks", lambda quantity: measured)
-    cells = Outline(report_tables.summary(["q"])).cells
+    monkeypatch.setattr(sections, "marks", lambda owner: measured)
+    cells = Outline(sections.summary([problem("q")])).cells
     text = " | ".join(cells)
     for mark in measured:
         assert f"{mark.rms:.3e}" in text
@@ -106,48 +102,58 @@ def test_the_summary_says_what_was_measured(monkeypatch):
     assert cells[row + 1 : row + 8] == [
         *("Eq. (4)", "2", "5", "4.000e-03", "0.4", "3.000e-02", "1.5"),
     ]
-    assert cells[row + 8] == "; ".join(proven(load("q").certificates))
+    assert cells[row + 8] == "; ".join(proof_text(table("q").certificates))
 
 
-def test_the_summary_has_what_is_not_published_too():
-    cells = Outline(report_tables.summary(["velvet"])).cells
-    stated = load("velvet").errors
+def table(name) -> Table:
+    return resolve(name).require_table()
+
+
+def test_the_summary_has_quantities_without_a_published_table_too():
+    text = sections.summary([problem("velvet")])
+    cells = Outline(text).cells
+    stated = table("velvet").errors
     assert stated is not None
     row = cells.index("velvet")
     assert cells[row + 4 : row + 8] == [
         *(f"{stated.off_grid.rms:.3e}", "—", f"{stated.off_grid.max:.3e}", "—"),
     ]
     assert any(cell.startswith("r = ") for cell in cells)
-    assert "p<sub>Schlick</sub>(k" in report_tables.summary(["velvet"])
+    assert "p<sub>Schlick</sub>(k" in text
 
 
-def test_a_certificate_is_what_the_table_records():
-    assert report_tables._certificate(load("g")) == "; ".join(proven(load("g").certificates))
-    assert report_tables._certificate(load("published/g")) == "—"
-    assert report_tables._certificate(None) == "—"
+def test_the_summary_names_a_quantity_that_has_no_table(monkeypatch):
+    monkeypatch.setattr(sections, "marks", lambda owner: ())
+    cells = Outline(sections.summary([problem("q")])).cells
+    assert cells[-1].startswith("Q = ")
 
 
-def test_all_errata_and_all_provenance_are_there(assembled):
-    for name in names():
-        table = load(name)
-        for erratum in table.publication.errata if table.publication else ():
-            assert report_tables.escape(erratum.why) in assembled
-        if table.provenance is not None:
-            assert f"<dd>{table.provenance.command}</dd>" in assembled
-            assert f"jax {table.provenance.versions['jax']}" in assembled
+def test_the_proofs_of_a_table_are_those_that_it_records():
+    assert sections._proofs(table("g")) == "; ".join(proof_text(table("g").certificates))
+    assert sections._proofs(table("published/g")) == "—"
+    assert sections._proofs(None) == "—"
+
+
+def test_all_errata_and_all_origins_are_there(assembled):
+    for entry in entries():
+        known = entry.require_table()
+        for erratum in known.publication.errata if known.publication else ():
+            assert sections.escape(erratum.why) in assembled
+        if known.provenance is not None:
+            assert f"<dd>{known.provenance.command}</dd>" in assembled
+            assert f"jax {known.provenance.versions['jax']}" in assembled
 
 
 def test_text_of_tables_is_escaped():
     hostile = "</dd><script>alert(1)</script>"
-    table: Table = load("q")
-    assert table.provenance is not None
-    provenance = table.provenance.model_copy(update={"command": hostile})
-    listed = report_tables._list(
-        report_tables._origin(table.model_copy(update={"provenance": provenance}))
-    )
+    known = table("q")
+    assert known.provenance is not None
+    provenance = known.provenance.model_copy(update={"command": hostile})
+    changed = known.model_copy(update={"provenance": provenance})
+    listed = sections._list(sections._origin(changed))
     assert "<script>" not in listed
     assert "&lt;script&gt;" in listed
-    assert report_tables.markup("a_b < ∫_Ω") == "a<sub>b</sub> &lt; ∫<sub>Ω</sub>"
+    assert sections.markup("a_b < ∫_Ω") == "a<sub>b</sub> &lt; ∫<sub>Ω</sub>"
 
 
 def test_bad_places_are_refused_before_the_work(tmp_path, capsys):
@@ -172,8 +178,8 @@ def test_the_command_writes_everything(tmp_path):
     with pytest.raises(SystemExit):
         main(["report", "--out", str(tmp_path / "again.html")])
     assert (tmp_path / "again.html").read_bytes() == out.read_bytes()
-    assert text.count("<figure id=") == len(PICTURES)
-    assert text.count("data:image/png;base64,") == len(PICTURES)
-    for quantity in quantities():
-        assert f'<th scope="row">published/{quantity}</th>' in text
+    assert text.count("<figure id=") == len(pictures())
+    assert text.count("data:image/png;base64,") == len(pictures())
+    for owner in with_published():
+        assert f'<th scope="row">published/{owner.name}</th>' in text
     assert len(text) < 6 << 20

@@ -2,14 +2,19 @@ import json
 
 import pytest
 
-from fitting import Goal, RationalPs
-from shadefit import search
+from coefficients import search as module
+from coefficients.catalogue import resolve
+from coefficients.search import Search
+from fitting import Goal
+from quantities import problem
+from quantities.fuzz.supplement import RATIONAL_PS
+from shadefit.commands.search import search
 
 GOAL = Goal("l2", rounding="float32")
 
 
-def run(capsys, folder, *, budget=5, max_error=None):
-    search.run("q", budget, max_error, 0.15, GOAL, folder, True)
+def run(capsys, folder, *, rounding="float32"):
+    search("q", budget=5, norm="l2", rounding=rounding, out=folder, json=True)
     return json.loads(capsys.readouterr().out)
 
 
@@ -26,22 +31,32 @@ def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, capsys
     for each in found["all"]:
         assert (tmp_path / each["file"]).is_file()
     assert (tmp_path / "q-frontier.png").read_bytes()[:4] == b"\x89PNG"
-    # Again: nothing is fitted, and the same is said.
-    monkeypatch.setattr(search, "improve", None)
+    # A second run fits nothing, and says the same.
+    monkeypatch.setattr(module, "fit", None)
     assert run(capsys, tmp_path) == found
-    # A goal of another kind is another search.
+    # With another goal it is another search.
     with pytest.raises(TypeError):
-        search.run("q", 5, None, 0.15, Goal("l2"), tmp_path, True)
+        run(capsys, tmp_path, rounding="none")
 
 
-def test_the_published_table_is_judged_where_the_candidates_are():
-    (form, *_) = search._candidates("ps", 0.3)
-    part = search._published("ps", form)
-    whole = search._published("ps", RationalPs)
+def test_the_published_table_is_judged_where_the_candidates_are(tmp_path):
+    wanted = Search(problem("ps"), GOAL, tmp_path, lower={"alpha": 0.3})
+    (form, *_) = wanted.candidates()
+    part = wanted._published(form)
+    whole = wanted._published(RATIONAL_PS)
+    assert part is not None
+    assert whole is not None
     # The largest errors are those of the least α.
     assert part.largest < 0.9 * whole.largest
     assert part.rms < whole.rms
     assert whole.operations == part.operations
+
+
+def test_a_search_for_r_begins_with_the_forms_of_the_best_tables(tmp_path):
+    wanted = Search(problem("r"), GOAL, tmp_path, lower={"alpha": 0.05})
+    (form, *_) = wanted.candidates()
+    assert form.axes[0].lower == 0.05
+    assert form is resolve("best/r-40-wide").require_fitted().form
 
 
 @pytest.mark.parametrize(
@@ -55,22 +70,23 @@ def test_the_published_table_is_judged_where_the_candidates_are():
     ],
 )
 def test_what_cannot_be_searched_is_refused_in_one_line(tmp_path, arguments, message):
+    quantity, budget, max_error, least_alpha = arguments
     with pytest.raises(ValueError, match=message) as caught:
-        search.run(*arguments, GOAL, tmp_path, True)
+        search(quantity, budget, max_error, least_alpha, norm="l2", out=tmp_path, json=True)
     assert "\n" not in str(caught.value)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_form_that_was_refused_is_not_tried_again(tmp_path, capsys, monkeypatch):
-    def refuse(*_):
+    def refuse(*_, **__):
         raise ValueError("it has a pole")
 
-    monkeypatch.setattr(search, "improve", refuse)
+    monkeypatch.setattr(module, "fit", refuse)
     for _ in range(2):
         with pytest.raises(ValueError, match="no form of q was found"):
             run(capsys, tmp_path)
         # From now on an attempt would be a TypeError.
-        monkeypatch.setattr(search, "improve", None)
+        monkeypatch.setattr(module, "fit", None)
     reasons = list(tmp_path.glob("*.refused.txt"))
     assert reasons
     assert {path.read_text() for path in reasons} == {"it has a pole\n"}

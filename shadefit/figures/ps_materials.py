@@ -1,4 +1,4 @@
-"""What depends on the material alone: R, the errors of P_s over materials, and its rows c_i."""
+"""P_s by material: the errors of its tables over all lights, and its coefficients c₀ … c₅."""
 
 import jax
 import numpy as np
@@ -6,40 +6,32 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from coefficients.catalogue import form_of, load
-from fitting.cells import fit_cells
-from fitting.paper import RationalPs
-from fitting.points.grids import light_directions, trapezoid_grid
-from integrals import PS, R
-from shadefit.figures.maps import error_maps, surfaces
+from coefficients.catalogue import AS_PRINTED, Entry, resolve
+from coefficients.exported_code import exported_values
+from fitting.points.grids import trapezoid_grid
+from fitting.solvers.separable import Separable
+from quantities.fuzz import PS
+from quantities.fuzz.lights import light_directions
 from shadefit.figures.style import ERRORS
-from shadefit.figures.values import exact, exported, mesh
+from shadefit.figures.values import axis_hints, exact, mesh, points_along
 
-_ALPHA, _THETA_F = RationalPs.axes[:2]
-PRINTED = "published/ps@printed"
+PRINTED = f"published/ps{AS_PRINTED}"
 TABLES = {
     "published, as printed": PRINTED,
     "published, rows exchanged": "published/ps",
     "refitted": "ps",
 }
+BEST = "best in each cell"
 # The rows of the published table that are exchanged.
 EXCHANGED = (3, 4)
-
-
-def draw_r() -> Figure:
-    """Draw R over θf and α: exact, published, refitted."""
-    labels = ("α", "$θ_f$ / rad", "$R$")
-    return surfaces(R, _materials(41), labels, (0.0, 1.0), azimuth=-40.0)
-
-
-def draw_r_errors() -> Figure:
-    """Map R and the signed errors of its tables over α and θf."""
-    labels = ("α", "fibre's angle $θ_f$ / °")
-    return error_maps(R, _materials(61), labels, 1e-3, units=(1.0, 180 / np.pi))
+# What c₀ … c₅ of Eq. (1) are multiplied by.
+_TERMS = ("1", "u·n", "u·t", "(u·n)²", "(u·n)(u·t)", "(u·t)²")
+_HINTS = [hint for _, hint in axis_hints(PS)[:2]]
+_TILT = _HINTS[1]
 
 
 def draw_ps_errors(count: int = 49, directions: int = 16) -> Figure:
-    """Map the rms and the largest error of P_s over directions, for every material and table."""
+    """Map the rms and the largest error of P_s over lights, for every material and table."""
     figure = Figure(figsize=(9.6, 5.6), layout="constrained")
     grid = figure.subplots(2, len(TABLES), sharex=True, sharey=True)
     alphas, tilts, errors = ps_errors(count, directions)
@@ -48,11 +40,11 @@ def draw_ps_errors(count: int = 49, directions: int = 16) -> Figure:
     for column, (label, (rms, largest)) in zip(grid.T, errors.items(), strict=True):
         for axes, image in zip(column, (rms, largest), strict=True):
             shown = axes.pcolormesh(
-                np.degrees(tilts), alphas, image, norm=scale, cmap="magma_r", rasterized=True
+                tilts * _TILT.factor, alphas, image, norm=scale, cmap="magma_r", rasterized=True
             )
             axes.set_yticks([0.25, 0.5, 0.75, 1.0])
         column[0].set_title(label)
-        column[1].set_xlabel("fibre's angle $θ_f$ / °")
+        column[1].set_xlabel(_TILT.shown_label)
     grid[0, 0].set_ylabel("rms over lights\nα")
     grid[1, 0].set_ylabel("largest over lights\nα")
     figure.colorbar(shown, ax=grid, label="error of $P_s$", extend="both", aspect=40)
@@ -60,37 +52,36 @@ def draw_ps_errors(count: int = 49, directions: int = 16) -> Figure:
 
 
 def ps_errors(count: int, directions: int):
-    """Give the rms and largest error of each table of P_s over lights, for count² materials.
+    """Return the rms and largest error of each table of P_s over lights, for count² materials.
 
     Lights are `directions`² Gauss–Legendre and midpoint nodes, uniform in θu and φ. Returns α
     (count,), θf (count,), and by label a pair of (count, count) arrays, α first.
     """
-    alphas = np.linspace(_ALPHA.lower, _ALPHA.upper, count)
-    tilts = np.linspace(_THETA_F.lower, _THETA_F.upper, count)
-    lights, weights = light_directions(PS.axes[2], directions, "uniform")
+    alphas, tilts = (points_along(hint, count) for hint in _HINTS)
+    lights, weights = light_directions(directions, "uniform")
     materials = mesh(alphas, tilts)[:, :, None, :]
     shape = (count, count, len(lights), 2)
     points = np.concatenate(
         [np.broadcast_to(materials, shape), np.broadcast_to(lights, shape)], axis=-1
     )
-    truth = exact(PS, points)
+    truth = exact(PS.reference, points)
     errors = {}
     for label, name in TABLES.items():
-        apart = np.abs(exported(name, points) - truth)
+        apart = np.abs(exported_values(resolve(name), points) - truth)
         errors[label] = np.sqrt(apart**2 @ weights), apart.max(axis=-1)
     return alphas, tilts, errors
 
 
 def draw_rows(count: int = 33) -> Figure:
-    """Draw c₀ … c₅ over materials: best in each cell, published as printed, exchanged, refitted."""
+    """Draw c₀ … c₅ over materials, a row each for the best ones and for every table."""
     alphas, tilts, rows = ps_rows(count)
     figure = Figure(figsize=(9.6, 6.4), layout="constrained")
     grid = figure.subplots(len(rows), 6, sharex=True, sharey=True)
-    limits = np.ceil(np.abs(rows["best in each cell"]).max(axis=(0, 1)) * 10) / 10
+    limits = np.ceil(np.abs(rows[BEST]).max(axis=(0, 1)) * 10) / 10
     for row, (label, values) in enumerate(rows.items()):
         for i, axes in enumerate(grid[row]):
             shown = axes.pcolormesh(
-                np.degrees(tilts),
+                tilts * _TILT.factor,
                 alphas,
                 values[..., i],
                 cmap=ERRORS,
@@ -101,7 +92,7 @@ def draw_rows(count: int = 33) -> Figure:
             if label == "published, as printed" and i in EXCHANGED:
                 axes.spines[:].set(visible=True, color="#d55e00", linewidth=2.5)
             if row == len(rows) - 1:
-                axes.set_xlabel("$θ_f$ / °")
+                axes.set_xlabel(f"{_TILT.short_label} / {_TILT.unit}")
                 figure.colorbar(shown, ax=grid[:, i], location="bottom", aspect=12, extend="both")
             if row == 0:
                 axes.set_title(f"$c_{i}$  ({_TERMS[i]})")
@@ -109,28 +100,23 @@ def draw_rows(count: int = 33) -> Figure:
     return figure
 
 
-_TERMS = ("1", "u·n", "u·t", "(u·n)²", "(u·n)(u·t)", "(u·t)²")
-
-
 def ps_rows(count: int) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-    """Give c₀ … c₅ for count² materials: α (count,), θf (count,), and (count, count, 6) by label.
+    """Return c₀ … c₅ for count² materials: α (count,), θf (count,), and (count, count, 6) by label.
 
-    The first is the least squares optimum of each material by itself.
+    The first entry is the least squares optimum of each material by itself.
     """
-    grid = trapezoid_grid((_ALPHA, _THETA_F), count)
+    published = resolve(PRINTED).require_fitted().form
+    solver = published.solver
+    assert isinstance(solver, Separable)
+    grid = trapezoid_grid(published.axes[: published.shared], count)
     alphas, tilts = grid.nodes
     points = mesh(alphas, tilts)
-    rows = {"best in each cell": np.asarray(fit_cells(grid, "uniform").coefficients)}
-    for label, name in TABLES.items():
-        form = form_of(load(name))
-        assert isinstance(form, RationalPs)
-        rows[label] = np.asarray(jax.vmap(jax.vmap(form.material))(points[..., 0], points[..., 1]))
+    rows = {BEST: np.asarray(solver.node_fits(published, grid, "uniform").optimum)}
+    rows |= {label: _rows(resolve(name), points) for label, name in TABLES.items()}
     return alphas, tilts, rows
 
 
-def _materials(count: int) -> np.ndarray:
-    alpha, theta_f = R.axes
-    low = _ALPHA.lower
-    return mesh(
-        np.linspace(low, alpha.upper, count), np.linspace(theta_f.lower, theta_f.upper, count)
-    )
+def _rows(entry: Entry, points: np.ndarray) -> np.ndarray:
+    """Evaluate c₀ … c₅ of a table at materials (…, 2): (…, 6)."""
+    first = jax.vmap(jax.vmap(entry.require_fitted().first))
+    return np.asarray(first(points[..., 0], points[..., 1]))

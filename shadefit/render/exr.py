@@ -1,0 +1,43 @@
+"""OpenEXR files without compression, as OpenEXR's "File Layout" document describes them."""
+
+import struct
+
+import numpy as np
+
+_MAGIC, _VERSION = 20000630, 2
+# The pixel type of 32-bit floats.
+_FLOAT = 2
+
+
+def write_exr(channels: dict[str, np.ndarray]) -> bytes:
+    """Return an OpenEXR file of named channels (height, width), stored as 32-bit floats.
+
+    A channel with the name 'layer.R' is the red channel of a layer.
+    """
+    names = sorted(channels)
+    height, width = channels[names[0]].shape
+    listed = b"".join(
+        name.encode() + b"\0" + struct.pack("<iB3xii", _FLOAT, 0, 1, 1) for name in names
+    )
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    attributes = (
+        ("channels", "chlist", listed + b"\0"),
+        ("compression", "compression", b"\0"),
+        ("dataWindow", "box2i", window),
+        ("displayWindow", "box2i", window),
+        ("lineOrder", "lineOrder", b"\0"),
+        ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+        ("screenWindowWidth", "float", struct.pack("<f", 1)),
+    )
+    header = struct.pack("<2i", _MAGIC, _VERSION)
+    for key, kind, value in attributes:
+        header += key.encode() + b"\0" + kind.encode() + b"\0"
+        header += struct.pack("<i", len(value)) + value
+    header += b"\0"
+    line = 8 + 4 * width * len(names)
+    first = len(header) + 8 * height
+    offsets = struct.pack(f"<{height}Q", *(first + line * y for y in range(height)))
+    stacked = np.stack([channels[name] for name in names], axis=1).astype("<f4")
+    rows = [struct.pack("<2i", y, line - 8) + stacked[y].tobytes() for y in range(height)]
+    return header + offsets + b"".join(rows)

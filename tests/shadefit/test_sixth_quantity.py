@@ -1,0 +1,65 @@
+"""A sixth quantity, which only tests/soft_step.py knows, goes through every command."""
+
+import json
+
+import pytest
+
+import shadefit as sf
+from quantities.registry import unregister
+from shadefit.cli import main
+from tests.soft_step import PROBLEM
+
+
+@pytest.fixture(autouse=True)
+def _registered():
+    sf.register(PROBLEM)
+    yield
+    unregister(PROBLEM.name)
+
+
+def test_it_goes_through_every_command(tmp_path, capsys):
+    def run(*arguments) -> str:
+        with pytest.raises(SystemExit) as ended:
+            main([str(each) for each in arguments])
+        output = capsys.readouterr()
+        assert ended.value.code == 0, output.err
+        return output.out
+
+    table = tmp_path / "soft.json"
+    largest = {}
+    for norm in ("l2", "linf"):
+        made = json.loads(run("refit", "soft", "--norm", norm, "--out", tmp_path, "--json"))
+        largest[norm] = made["tables"][0]["errors"]["off_grid"]["max"]
+    assert largest["linf"] < 0.9 * largest["l2"]
+    assert largest["linf"] < 0.02
+
+    (compared,) = json.loads(run("compare", table, "--json"))["comparisons"]
+    assert compared["tables"][0]["max"] == pytest.approx(largest["linf"], rel=1e-9)
+    told = json.loads(run("evaluate", "soft", "--x", 1, "--y", 0.8, "--table", table, "--json"))
+    assert abs(told["tables"][str(table)]["difference"]) <= largest["linf"]
+    for language in sf.LANGUAGES:
+        assert "SoftStep" in run("export", table, "--to", language)
+    assert "failed" not in run("verify", table, "--to", "c")
+
+    found = json.loads(run("search", "soft", "--out", tmp_path / "search", "--json"))
+    assert [each["form"] for each in found["frontier"]] == ["short", "longer"]
+    run("figures", "errors-soft", "--out", tmp_path)
+    assert (tmp_path / "errors-soft.svg").stat().st_size > 1000
+    run("report", "--out", tmp_path / "report.html")
+    assert "a soft step" in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--x", "1"], "--y is missing of soft, which takes --x, --y"),
+        (["--x", "1", "--y", "0.8", "--z", "1"], "--z is no argument of soft"),
+        (["--x", "9", "--y", "0.8"], "--x = 9 is outside its domain [0, 4]"),
+        (["--x", "one", "--y", "0.8"], "'one' is not a valid float"),
+    ],
+)
+def test_its_options_are_those_of_its_axes(capsys, arguments, message):
+    with pytest.raises(SystemExit) as ended:
+        main(["evaluate", "soft", *arguments])
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err
