@@ -1,7 +1,7 @@
 """The published tables: each constant, and each erratum by what undoing it does.
 
-Listings 2 to 5 are transcribed here in plain Python, and the forms that read the tables are compared
-with them.
+Listings 2 to 5 are transcribed here in plain Python, and the forms that read the tables are
+compared with them.
 """
 
 import functools

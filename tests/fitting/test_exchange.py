@@ -128,7 +128,7 @@ def test_a_bounded_fit_is_in_the_unit_interval_where_the_best_one_is_not():
 
 
 def test_the_worst_points_of_elsewhere_are_added_to_the_sample():
-    """With few fitted points the error elsewhere is larger at first, and less after the exchange."""
+    """Few fitted points leave a larger error elsewhere, which the exchange makes less."""
     form = replace(QUOTIENT, reference=replace(TOY, sampling=replace(TOY.sampling, fitted=3)))
     goal = Goal("linf")
     once, settled = (

@@ -1,4 +1,4 @@
-"""Forms as values: one stage or two, coefficients in their shape or flat, and the traced program."""
+"""Forms as values: one stage or two, coefficients in their shape or flat, traced programs."""
 
 import jax
 import jax.numpy as jnp

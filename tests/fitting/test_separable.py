@@ -24,9 +24,7 @@ THETA_U = RATIONAL_PS.axes[2]
 
 def solver(count: int):
     """Return the solver of P_s with count² lights a material."""
-    return replace(
-        RATIONAL_PS.solver, rule=lambda measure: light_directions(count, measure)
-    )
+    return replace(RATIONAL_PS.solver, rule=lambda measure: light_directions(count, measure))
 
 
 @functools.cache
