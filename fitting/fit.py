@@ -67,8 +67,8 @@ def fit(
 
     With `nodes`, squared errors are first made small on a tensor grid of so many nodes an axis; a
     goal other than that is then pursued on scattered points, from there. Without, all is done on
-    scattered points, from the form's own starts. `measure` names one of the quantity's measures, if it
-    has several. `progress` is told of each stage; `exchange` is the solver on scattered points.
+    scattered points, from the form's own starts. `measure` names one of the quantity's measures, if
+    it has several. `progress` is told of each stage; `exchange` is the solver on scattered points.
 
     Raises ValueError for a number of nodes or a measure that is not allowed, and for a fit with a
     denominator that is not shown to be positive. A bounded goal is refused where it is not proven.

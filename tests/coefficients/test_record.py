@@ -62,9 +62,7 @@ def test_a_fit_is_written_down_whole():
 
 def test_what_is_proven_besides_is_written_down_where_it_is_known():
     goal = Goal("linf", rounding="float32")
-    proven = replace(
-        fit_of(Q), goal=goal, range=Bounds(0.25, 1.0, 3), least_error=0.39, below=1e-7
-    )
+    proven = replace(fit_of(Q), goal=goal, range=Bounds(0.25, 1.0, 3), least_error=0.39, below=1e-7)
     table = table_of(proven, "make it", "mine")
     assert table.name == "mine"
     assert Goal(**table.goal.model_dump()) == goal

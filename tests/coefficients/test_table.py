@@ -239,7 +239,7 @@ WRONG = {
     "a grid of half a node": put("grid", "nodes", 0, "count", 2.5),
     "a negative error": put("errors", "on_grid", "rms", -1e-3),
     "an error at no point": put("errors", "off_grid", "points", 0),
-    "an unknown weight": put("weight", "sine"),
+    "a weight that is no name": put("weight", "Sine!"),
     "an unknown leg": put("reference", "leg", "guess"),
     "a list for a table": lambda data: None,
 }

@@ -186,6 +186,11 @@ def test_an_unknown_measure_is_refused(nodes):
         fit(RATIONAL_PS, nodes=nodes, measure="sine")
 
 
+def test_a_quantity_with_one_measure_takes_it_whatever_is_asked_for():
+    assert fit(QUADRATIC_Q, nodes=17, measure="cosine").measure == "uniform"
+    assert fit(QUADRATIC_Q, measure="cosine").measure == "uniform"
+
+
 # 1 + qᵀy with a zero at a node (θf = π/2, δ = 1), and one that is on no node of any grid
 POLES = {"at a node": [0.0, 0.0, -1.0], "between": [0.0, -np.cos(0.7), -np.sin(0.7)]}
 

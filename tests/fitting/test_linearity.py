@@ -287,7 +287,7 @@ def test_what_must_stay_positive_has_derivatives():
 
 def test_a_fit_takes_the_forms_own_function_where_there_is_one():
     assert positive_of(RATIONAL_R) is RATIONAL_R.proofs.positive
-    assert positive_of(RATIONAL_G) is derived_positive(RATIONAL_G)
+    assert positive_of(QUADRATIC_Q) is derived_positive(QUADRATIC_Q)
 
 
 # The program
