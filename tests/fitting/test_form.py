@@ -1,15 +1,17 @@
-"""Forms as values: one stage or two, coefficients in their shape or flat, and the traced program."""
+"""Forms as values: one stage or two, coefficients in shape or flat, and the traced program."""
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from fitting import Form, Stage
+from fitting import Form, Stage, plain_form
 from fitting.form import traced
 from integrals import Axis
+from integrals.reference import restricted
 from programs import evaluate
 from tests.fitting.toys import AXES, PLANE, TOY, toy_form
+from tests.soft_step import SOFT
 
 # A material's two numbers first, then a direction's value.
 TWO_STAGES = Form(
@@ -92,3 +94,27 @@ def test_a_function_of_other_axes_can_be_traced_for_proofs():
     program = traced(fitted, both, (AXES[0], square), 2)
     assert program.inputs == ("x", "square")
     np.testing.assert_allclose(evaluate(program, np.array([[0.5, 4.0]])), [[2 - 11, 2]])
+
+
+def test_a_plain_function_is_a_form_whose_arguments_tell_axes_from_coefficients():
+    def bent(a, x, b, y):
+        """S = a x/(1 + b y)"""
+        return a * x / (1 + b * y)
+
+    form = plain_form(bent, SOFT)
+    assert form.coefficient_names == ["a", "b"]
+    assert form.name == "bent"
+    assert form.equation == "S = a x/(1 + b y)"
+    assert float(form(np.array([3.0, 0.5]), 2.0, 0.8)) == 6 / 1.4
+    restricted_axes = restricted(SOFT.axes, x=(1.0, 2.0))
+    other = plain_form(bent, SOFT, [1.0, 0.2], "other-name", restricted_axes)
+    assert other.axes[0].lower == 1.0
+    assert other.name == "other-name"
+    np.testing.assert_array_equal(other.starts[0], [1.0, 0.2])
+
+
+def test_a_plain_function_that_is_no_form_is_refused():
+    with pytest.raises(ValueError, match="flat does not take 'y'"):
+        plain_form(lambda x, a: a * x, SOFT, name="flat")
+    with pytest.raises(ValueError, match="flat: 2 starts given for 1 coefficients"):
+        plain_form(lambda x, y, a: a * x * y, SOFT, [1.0, 2.0], name="flat")
