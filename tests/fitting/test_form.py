@@ -105,7 +105,7 @@ def test_a_plain_function_is_a_form_whose_arguments_tell_axes_from_coefficients(
     assert form.coefficient_names == ["a", "b"]
     assert form.name == "bent"
     assert form.equation == "S = a x/(1 + b y)"
-    assert float(form(np.array([3.0, 0.5]), 2.0, 0.8)) == 6 / 1.4
+    assert float(form(jnp.array([3.0, 0.5]), 2.0, 0.8)) == pytest.approx(6 / 1.4, rel=1e-15)
     restricted_axes = restricted(SOFT.axes, x=(1.0, 2.0))
     other = plain_form(bent, SOFT, [1.0, 0.2], "other-name", restricted_axes)
     assert other.axes[0].lower == 1.0
