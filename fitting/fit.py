@@ -67,16 +67,14 @@ def fit(
 
     With `nodes`, squared errors are first made small on a tensor grid of so many nodes an axis; a
     goal other than that is then pursued on scattered points, from there. Without, all is done on
-    scattered points, from the form's own starts. `measure` names one of the quantity's measures; a
-    quantity that does not have it weighs its errors equally. `progress` is told of each stage;
-    `exchange` is the solver on scattered points.
+    scattered points, from the form's own starts. `measure` names one of the quantity's measures, if
+    it has several. `progress` is told of each stage; `exchange` is the solver on scattered points.
 
-    Raises ValueError for a number of nodes that is not allowed, and for a fit with a denominator
-    that is not shown to be positive. A bounded goal is refused where it is not proven.
+    Raises ValueError for a number of nodes or a measure that is not allowed, and for a fit with a
+    denominator that is not shown to be positive. A bounded goal is refused where it is not proven.
     """
     _require(form, goal, nodes)
-    # A quantity without that measure weighs its errors equally.
-    measure = measure if measure in form.reference.sampling.measures else "uniform"
+    measure = _measure_of(form, measure)
     start = None
     if nodes is not None:
         found = (form.solver or OnGrid()).fit(form, nodes, measure, progress)
@@ -94,6 +92,16 @@ def _require(form: Form, goal: Goal, nodes: int | None) -> None:
         raise ValueError(f"grid = {nodes}: allowed are {MIN_NODES} to {MAX_NODES} nodes an axis")
     if goal.bounded and len(form.axes) > MOST_AXES and form.proofs.margins is None:
         raise ValueError(f"bounded = True: no proof is known that would bound {form.name}")
+
+
+def _measure_of(form: Form, wanted: str) -> str:
+    """Return the measure of a fit; a quantity that has but one takes that, whatever is wanted."""
+    measures = form.reference.sampling.measures
+    if len(measures) == 1:
+        return next(iter(measures))
+    if wanted not in measures:
+        raise ValueError(f"weight = {wanted!r}: allowed are {', '.join(measures)}")
+    return wanted
 
 
 def _on_grid(form: Form, found: GridFit, nodes: int) -> Fit:

@@ -187,6 +187,12 @@ def test_a_grid_that_cannot_be_fitted_is_refused(nodes, message):
         fit(QUADRATIC_Q, nodes=nodes)
 
 
+@pytest.mark.parametrize("nodes", [None, 17])
+def test_an_unknown_measure_is_refused(nodes):
+    with pytest.raises(ValueError, match="weight = 'sine': allowed are uniform, solid-angle, cos"):
+        fit(RATIONAL_PS, nodes=nodes, measure="sine")
+
+
 # 1 + qᵀy with a zero at a node (θf = π/2, δ = 1), and one that is on no node of any grid
 POLES = {"at a node": [0.0, 0.0, -1.0], "between": [0.0, -np.cos(0.7), -np.sin(0.7)]}
 

@@ -9,6 +9,7 @@ from fitting import Form, Stage, plain_form
 from fitting.fit import fit
 from fitting.form import traced, unguarded
 from integrals import Axis
+from integrals.reference import restricted
 from programs import evaluate
 from tests.fitting.toys import AXES, PLANE, TOY, toy_form
 
@@ -122,7 +123,7 @@ def test_the_order_of_the_arguments_does_not_matter():
 
 
 def test_a_plain_form_can_be_fitted_and_restricted():
-    upper = (AXES[0], Axis("y", "y", "1", 0.0, 2.0, "the second argument"))
+    upper = restricted(AXES, y=(0.0, 2.0))
     form = plain_form(tilted, TOY, axes=upper)
     found = fit(form, nodes=9)
     assert found.fitted.axes == upper

@@ -30,8 +30,8 @@ def test_errors_are_scaled_by_the_measure_and_the_value(goal, measure, expected)
     np.testing.assert_allclose(found, expected, rtol=1e-15)
 
 
-def test_errors_without_a_measure_are_taken_as_they_are():
-    np.testing.assert_array_equal(sample_of(QUADRATIC_Q).scale, 1)
+def test_the_uniform_measure_weighs_all_errors_alike():
+    np.testing.assert_array_equal(sample_of(QUADRATIC_Q, Goal(), "uniform").scale, 1)
 
 
 def test_the_sample_of_a_form_is_the_scattered_points_of_its_quantity():

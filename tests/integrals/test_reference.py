@@ -7,8 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from integrals import PS, REFERENCES, Axis, Estimate, Reference, Sampling
-from integrals.reference import box_of, in_batches, leg, require_float64
+from integrals import PS, REFERENCES, Axis, Estimate, R, Reference, Sampling
+from integrals.reference import box_of, in_batches, leg, require_float64, restricted
 from tests.integrals.problems import KNOWN_VALUES, RIGHT
 
 # A correct Monte Carlo estimate exceeds this many standard errors once in 1.7 million trials.
@@ -290,3 +290,16 @@ def test_in_batches_joins_all_results():
     assert sizes == [3, 3, 3]
     np.testing.assert_array_equal(first, points[:, 0])
     np.testing.assert_array_equal(table, points @ np.ones((2, 3)))
+
+
+def test_axes_are_restricted_by_name():
+    alpha, theta_f = restricted(R.axes, alpha=(0.15, 1.0))
+    assert (alpha.lower, alpha.upper, alpha.open_below) == (0.15, 1.0, False)
+    assert theta_f is R.axes[1]
+    # The open end stays open where it is kept.
+    assert restricted(R.axes, alpha=(0.0, 0.5))[0].open_below
+    with pytest.raises(ValueError, match="'density' is no axis: allowed are alpha, theta_f"):
+        restricted(R.axes, density=(0.0, 1.0))
+    for domain in ((-0.1, 1.0), (0.5, 0.5), (0.5, 1.1)):
+        with pytest.raises(ValueError, match=r"allowed is part of \(0, 1\]"):
+            restricted(R.axes, alpha=domain)
