@@ -33,6 +33,12 @@ BEST = names_of_best()
 TABLES = [entry.name for entry in entries() if entry.kind in ("best", "refitted")]
 WITH_COEFFICIENTS = [name for name in TABLES if resolve(name).require_table().size]
 
+
+def slow_for(*some: str) -> list:
+    """Return the names of all tables, of which some take seconds and are left to the slow tests."""
+    return [pytest.param(n, marks=pytest.mark.slow) if n in some else n for n in TABLES]
+
+
 # The short check has points of its own: a seed, and 2⁸ uniform ones before others.
 SEED, EXPONENT = 20240229, 8
 # Values near one are rounded by a few units in the last place.
@@ -104,14 +110,8 @@ def test_a_table_has_the_errors_and_the_range_that_it_states(name):
     assert all(axis.contains(where[axis.name]) for axis in entry.axes)
 
 
-@pytest.mark.parametrize(
-    "name",
-    # R of low α takes as long as all others together, and its rms is checked above.
-    [
-        pytest.param(name, marks=pytest.mark.slow) if name == "best/r-40-wide" else name
-        for name in TABLES
-    ],
-)
+# R of low α takes as long as all others together, and its rms is checked above.
+@pytest.mark.parametrize("name", slow_for("best/r-40-wide"))
 def test_a_table_is_measured_anew(name):
     entry = resolve(name)
     errors, stated = judge(entry.require_fitted()), entry.require_table().errors.off_grid
@@ -313,18 +313,12 @@ def test_more_operations_never_buy_a_larger_error(quantity):
 # Proven anew
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", slow_for("best/ps-25", "best/ps-40"))
 def test_a_table_is_certified_anew(name):
     assert certify_denominators(resolve(name).require_fitted(), ENOUGH).holds
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow) if name in ("best/ps-11", "best/ps-25") else name
-        for name in TABLES
-    ],
-)
+@pytest.mark.parametrize("name", slow_for("best/ps-11", "best/ps-21", "best/ps-25"))
 def test_the_range_of_a_table_is_proven_anew(name):
     entry = resolve(name)
     fitted, stated = entry.require_fitted(), entry.require_table().certificates.range
