@@ -184,6 +184,11 @@ def names_of_best() -> list[str]:
     return [name for name in _files() if name.startswith("best/")]
 
 
+def is_kept(name: str) -> bool:
+    """Tell whether a name is that of a table or a quantity whose tables are kept here."""
+    return name in _files() or (name in problems() and bool(problem(name).topic))
+
+
 def path_of(name: str) -> Path:
     """Return the file that a table's name is kept in, or would be."""
     if name in _files():

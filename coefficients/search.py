@@ -96,9 +96,8 @@ class Search:
 
     def candidates(self) -> Iterator[Form]:
         """Yield the forms to try, those of the best tables first if the quantity says so."""
-        assert self.owner.candidates is not None
         lower = self.lower or {}
-        tried = self.owner.candidates(lower)
+        tried = self.owner.tried(lower)
         if not self.owner.searches_best:
             return tried
         known = [e.require_fitted().form for e in entries(self.owner) if e.kind == "best"]

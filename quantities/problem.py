@@ -152,8 +152,8 @@ class Problem:
 
     * `reference`: the exact values and the axes.
     * `default`: the form that `refit NAME` fits; `forms`: all forms by name that are no family's.
-    * `families`: families of forms by name; `candidates` maps lower ends of axes, such as
-      {"alpha": 0.15}, to the forms that a search tries.
+    * `families`: families of forms by name. `candidates` maps lower ends of axes, such as
+      {"alpha": 0.15}, to the forms that a search tries; None stands for `default` and `forms`.
     * `calling`: names, arguments and clamps of the exported functions.
     * `closed_form`: the exact value as a function of the axes that can be exported, in float64;
       `exact_code`: the same as shader code, where it is of use there.
@@ -198,6 +198,12 @@ class Problem:
     def single_forms(self) -> dict[str, Form]:
         """The forms that are no family's, by name, the default one first."""
         return {form.name: form for form in (self.default, *self.forms)}
+
+    def tried(self, lower: Mapping[str, float]) -> Iterator[Form]:
+        """Yield the forms that a search tries: the candidates, or all forms that are no family's."""
+        if self.candidates is not None:
+            return self.candidates(lower)
+        return iter(self.single_forms.values())
 
     def form(self, name: str, shape: dict[str, Any] | None) -> Form:
         """Return a form by name, and by shape if it is a family's.

@@ -1,5 +1,7 @@
 """The command line `shadefit`: its commands are in `shadefit.commands`."""
 
+import functools
+import inspect
 import os
 import sys
 from collections.abc import Callable
@@ -37,7 +39,38 @@ def _print_version(wanted: bool | None) -> None:
 
 
 def _add(name: str, command: Callable, examples: str, **options) -> None:
-    app.command(name, epilog=examples, **options)(command)
+    app.command(name, epilog=examples, **options)(_with_problem_files(command))
+
+
+def _with_problem_files(command: Callable) -> Callable:
+    """Give a command the option -p, which loads a user's quantities before the command runs."""
+
+    @functools.wraps(command)
+    def run(*arguments, problem: list[str] | None = None, **options):
+        if problem:
+            from quantities.loader import load_problems  # noqa: PLC0415
+
+            for each in problem:
+                load_problems(each)
+        return command(*arguments, **options)
+
+    signature = inspect.signature(command)
+    option = inspect.Parameter("problem", inspect.Parameter.KEYWORD_ONLY, default=None)
+    option = option.replace(annotation=_ProblemFiles)
+    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), option])
+    run.__annotations__ = {**command.__annotations__, "problem": _ProblemFiles}
+    return run
+
+
+_ProblemFiles = Annotated[
+    list[str] | None,
+    typer.Option(
+        "-p",
+        "--problem",
+        help="Python file that declares quantities, FILE.py[:NAME]; it is run. May be given again.",
+        metavar="FILE",
+    ),
+]
 
 
 _add(
@@ -103,6 +136,13 @@ def main(arguments: list[str] | None = None) -> None:
         # The reader of our output has gone: not an error, but Python would complain at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(0)
+    except Exception as error:
+        loader = sys.modules.get("quantities.loader")
+        if loader is None or not isinstance(error, loader.ProblemFileError):
+            raise
+        # The user's own traceback, as it is.
+        print(error, file=sys.stderr)
+        sys.exit(2)
     sys.exit(status or 0)
 
 

@@ -40,7 +40,6 @@ PROBLEM = sf.Problem(
     reference=SOFT,
     default=FORMS[1],
     forms=FORMS[:1],
-    candidates=lambda _: iter(FORMS),
     calling=sf.CallingConvention(
         name="SoftStep",
         summary="S ({equation}); clamps to the domain.",

@@ -118,11 +118,15 @@ def run(
 
 
 def selection(names: list[str]) -> "list[Problem | Entry]":
-    """Return what is meant, quantities in their own order; 'all' or nothing stands for those."""
+    """Return what is meant, quantities in their own order.
+
+    'all' stands for all of them, and nothing for those of the user's files or, without any, for all.
+    """
     from coefficients.catalogue import names_of_best, resolve
     from quantities import problems
 
     every, best = problems(), names_of_best()
+    names = names or [owner.name for owner in every.values() if not owner.topic]
     unknown = [name for name in names if name not in (*every, ALL, *best)]
     if unknown:
         allowed = ", ".join((*every, ALL, *best))
@@ -153,8 +157,10 @@ def _has_own_goal(each: "Problem | Entry") -> bool:
 
 def _own_folder(name: str) -> Path:
     """Return the folder that a table's name is kept in, by a short path where there is one."""
-    from coefficients.catalogue import path_of
+    from coefficients.catalogue import is_kept, path_of
 
+    if not is_kept(name):
+        raise ValueError(f"{name} has no folder of its own: give one by --out")
     folder, here = path_of(name).parent, Path.cwd()
     return folder.relative_to(here) if folder.is_relative_to(here) else folder
 

@@ -55,7 +55,12 @@ def search(
     fields: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
     fields |= goal_fields(norm, side, rounding, relative, bounded)
     goal = Goal(**fields)
-    known = {name: each for name, each in problems().items() if each.candidates is not None}
+    # A quantity with a single form has nothing to search among.
+    known = {
+        name: each
+        for name, each in problems().items()
+        if each.candidates is not None or len(each.single_forms) > 1
+    }
     if quantity not in known:
         raise ValueError(f"no forms of {quantity!r} are known: allowed are {', '.join(known)}")
     if budget is not None and budget < 1:
