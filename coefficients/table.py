@@ -40,7 +40,7 @@ class _Part(BaseModel):
 
 
 class Argument(_Part):
-    """One argument: its name, its unit ('rad' or '1'), and the table's domain, a closed interval."""
+    """One argument: its name, its unit ('rad' or '1'), and its domain, a closed interval."""
 
     name: Text
     unit: Literal["1", "rad"]
