@@ -28,7 +28,7 @@ def cost(
 ) -> None:
     """Count the operations of a table's exported functions, by kind.
 
-    The closed form is counted too if the table's form has two stages, as those of P_s have.
+    The closed form is counted too if the table's form has two stages (ps).
     """
     from coefficients.catalogue import resolve
     from coefficients.exported_code import closed_form_beside, costs

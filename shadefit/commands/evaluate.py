@@ -44,12 +44,13 @@ def evaluate(
 ) -> None:
     """Evaluate an integral at one point, by all exact methods and by tables.
 
-    The exact methods are the closed form, quadrature and Monte Carlo, as far as they exist. The
-    tables are the published one, the refitted one, and those of --table.
+    The exact methods are closed form, quadrature and Monte Carlo, if they exist.
+    The tables are the published one, the refitted one, and those of --table.
 
-    Each argument of the integral is an option: --alpha, --theta-f, --theta-u and --phi of ps;
-    --density and --cos-v of g; --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
-    Angles are in radians, unless 'deg' follows the number: 0.785, 0.785rad, 45deg.
+    Each argument of the integral is an option:
+    --alpha, --theta-f, --theta-u and --phi of ps; --density and --cos-v of g;
+    --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
+    Angles are in radians, or in degrees with 'deg': 0.785, 0.785rad, 45deg.
     """
     run(integral, arguments or [], table or [], samples, sequence, seed, json)
 

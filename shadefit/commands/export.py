@@ -43,8 +43,8 @@ def export(
 ) -> None:
     """Write a table as JSON, or as code in a language.
 
-    If the compiler of the language is installed, the code is run. Its header states the measured
-    error.
+    The code is run if its compiler is installed. Its header states the error
+    that was measured.
     """
     from coefficients.catalogue import resolve
     from coefficients.exported_code import source_file

@@ -51,7 +51,7 @@ def render(
     sweep: Annotated[
         bool,
         typer.Option(
-            "--sweep", help="Instead, vary one setting at a time as in the talk: sweep.png."
+            "--sweep", help="Draw many densities, spreads and tilts, as in the talk: sweep.png."
         ),
     ] = False,
     json: Json = False,

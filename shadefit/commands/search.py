@@ -45,7 +45,7 @@ def search(
 ) -> None:
     """Fit many forms of a quantity. Print and plot their operations and largest errors.
 
-    By default the fits minimise the largest error, and coefficients are rounded to float32.
+    By default the largest error is minimised, and coefficients are float32.
     """
     from coefficients.files import require_writable, write_whole_bytes
     from coefficients.search import Search

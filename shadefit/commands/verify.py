@@ -31,8 +31,8 @@ def verify(
 ) -> int:
     """Compile and run exported code. Compare it with its form and with the exact integral.
 
-    The exit status is 1 if any language failed. If the compiler of a language is not installed, the
-    language is 'not checked'.
+    The exit status is 1 if any language failed. A language whose compiler
+    is not installed is 'not checked'.
     """
     from dataclasses import asdict
 
