@@ -80,16 +80,17 @@ def fit(
     * `nodes`: nodes along each axis of a tensor grid, on which a least squares fit is made. For
       another goal, a fit to scattered points follows, which starts from the coefficients of the
       grid. None: there is only the fit to scattered points, which starts from the form's starts.
-    * `measure`: the name of one of the quantity's measures. If the quantity does not have it, all
-      errors have the same weight.
+    * `measure`: the name of one of the quantity's measures, which weigh the errors. A quantity that
+      has only one measure takes that one.
     * `progress`: a function that is called with a short text before each step.
     * `exchange`: the solver on scattered points; None for the default one.
 
-    Raises ValueError for a number of nodes that is not allowed, for a fit with a denominator that
-    is not proven to be positive, and for a bounded goal if the bounds are not proven.
+    Raises ValueError for a number of nodes or a measure that is not allowed, for a fit with a
+    denominator that is not proven to be positive, and for a bounded goal if the bounds are not
+    proven.
     """
     _require(form, goal, nodes)
-    measure = measure if measure in form.reference.sampling.measures else "uniform"
+    measure = _measure_of(form, measure)
     start = None
     if nodes is not None:
         found = (form.solver or OnGrid()).fit(form, nodes, measure, progress)
@@ -107,6 +108,19 @@ def _require(form: Form, goal: Goal, nodes: int | None) -> None:
         raise ValueError(f"grid = {nodes}: allowed are {MIN_NODES} to {MAX_NODES} nodes an axis")
     if goal.bounded and len(form.axes) > MOST_AXES and form.proofs.margins is None:
         raise ValueError(f"bounded = True: no proof is known that would bound {form.name}")
+
+
+def _measure_of(form: Form, wanted: str) -> str:
+    """Return the name of the measure to use: the one that is wanted, or the only one.
+
+    Raises ValueError if the quantity has several measures and not the one that is wanted.
+    """
+    measures = form.reference.sampling.measures
+    if len(measures) == 1:
+        return next(iter(measures))
+    if wanted not in measures:
+        raise ValueError(f"weight = {wanted!r}: allowed are {', '.join(measures)}")
+    return wanted
 
 
 def _on_grid(form: Form, found: GridFit, nodes: int) -> Fit:

@@ -140,7 +140,7 @@ def plain_form(
     of_axes = [axis.name for axis in axes]
     arguments = list(inspect.signature(function).parameters)
     coefficients = [each for each in arguments if each not in of_axes]
-    own = name or function.__name__.replace("_", "-")
+    own = name or getattr(function, "__name__", "form").replace("_", "-")
     for missing in (each for each in of_axes if each not in arguments):
         raise ValueError(f"{own} does not take {missing!r}: allowed is a function of all axes")
     if len(start) not in (0, len(coefficients)):

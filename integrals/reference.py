@@ -35,19 +35,27 @@ class Axis:
     The domain is [`lower`, `upper`], or without `lower` itself if `open_below` is true. `upper` may
     be infinite. `scale` says how points are distributed along the axis; 'logarithmic' needs
     `lower` > 0. `period` is set if the quantity is periodic in this argument. `alias` is a second,
-    shorter name for the option on the command line.
+    shorter name for the option on the command line. The symbol is by default the name.
     """
 
     name: str
-    symbol: str
-    unit: str
-    lower: float
-    upper: float
-    meaning: str
+    lower: float | int
+    upper: float | int
+    symbol: str = ""
+    unit: str = "1"
+    meaning: str = ""
     open_below: bool = False
     scale: Scale = "linear"
     period: float | None = None
     alias: str | None = None
+
+    def __post_init__(self) -> None:
+        """Take the name for a symbol that is not given; raise ValueError for an empty domain."""
+        if not self.lower < self.upper:
+            raise ValueError(f"{self.name} in [{self.lower:g}, {self.upper:g}]: it is empty")
+        object.__setattr__(self, "symbol", self.symbol or self.name)
+        object.__setattr__(self, "lower", float(self.lower))
+        object.__setattr__(self, "upper", float(self.upper))
 
     @property
     def domain(self) -> str:

@@ -39,10 +39,11 @@ def flat_start(
     """Return the coefficients of surfaces that have the constant `values`.
 
     `slopes` maps the numbers of some surfaces to their slopes in x and in y, which are added.
+    Surfaces of degree 0 have no slopes.
     """
     start = np.zeros((len(values), (degree + 1) * (degree + 2) // 2))
     start[:, 0] = values
-    for k, (by_x, by_y) in (slopes or {}).items():
+    for k, (by_x, by_y) in (slopes or {}).items() if degree else ():
         start[k, [degree + 1, 1]] = by_x, by_y
     return start.ravel()
 

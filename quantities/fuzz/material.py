@@ -14,7 +14,7 @@ from integrals.reference import Axis, restricted
 from quantities.fuzz.lights import cosines_of_light
 from shading import direction_cosines
 
-COS_PHI = Axis("cos_phi", "cos φ", "1", -1.0, 1.0, "cosine of the light's azimuth")
+COS_PHI = Axis("cos_phi", -1.0, 1.0, "cos φ", meaning="cosine of the light's azimuth")
 # Interval arithmetic gives κ = (1 − α)(1 + α) bounds above 1 if the interval of α is wide. Proofs
 # therefore divide α and θf into this many pieces at first.
 FIRST_SPLIT = (64, 8)

@@ -97,14 +97,14 @@ def check_settings(settings: "Settings") -> None:
     from integrals import PS, Axis
 
     domains = (
-        Axis("density", "d", "1", 0.0, 0.5, "density of the layer"),
-        Axis("spread", "", "1", 0.0, 1.0, "spread of the lobe", open_below=True),
-        Axis("tilt", "θf", "rad", 0.0, PS.axes[1].upper, "polar angle of the fibres"),
-        Axis("sun_height", "", "rad", 0.0, pi / 2, "height of the sun above the horizon"),
-        Axis("sun_azimuth", "", "rad", -2 * pi, 2 * pi, "the sun's azimuth from the right"),
-        Axis("sun", "", "1", 0.0, 1e3, "irradiance of the sun"),
-        Axis("sky", "", "1", 0.0, 1e3, "radiance of the sky"),
-        Axis("size", "", "1", 16.0, 1024.0, "pixels an edge"),
+        Axis("density", 0.0, 0.5, "d", meaning="density of the layer"),
+        Axis("spread", 0.0, 1.0, meaning="spread of the lobe", open_below=True),
+        Axis("tilt", 0.0, PS.axes[1].upper, "θf", "rad", "polar angle of the fibres"),
+        Axis("sun_height", 0.0, pi / 2, "", "rad", "height of the sun above the horizon"),
+        Axis("sun_azimuth", -2 * pi, 2 * pi, "", "rad", "the sun's azimuth from the right"),
+        Axis("sun", 0.0, 1e3, meaning="irradiance of the sun"),
+        Axis("sky", 0.0, 1e3, meaning="radiance of the sky"),
+        Axis("size", 16.0, 1024.0, meaning="pixels an edge"),
     )
     for axis in domains:
         checked(axis, float(getattr(settings, axis.name)))

@@ -18,8 +18,9 @@ function ticks(low, high, count) {
 }
 
 function short(value) {
-    const text = Math.abs(value) < 1e-12 ? "0" : String(Number(value.toPrecision(3)));
-    return text.replace("-", "−");
+    const rounded = Math.abs(value) < 1e-12 ? 0 : Number(value.toPrecision(3));
+    const small = rounded !== 0 && Math.abs(rounded) < 1e-3;
+    return (small ? rounded.toExponential() : String(rounded)).replaceAll("-", "−");
 }
 
 // Draws lines into a container, over its whole width. Each of `lines` is { style, points:
@@ -27,7 +28,7 @@ function short(value) {
 // A vertical line marks x = `mark`, the explored place.
 function chart(container, { lines, bounds, xRange, xTicks, xLabel, yLabel, mark, height, label }) {
     const width = Math.max(260, container.clientWidth);
-    const [left, right, top, bottom] = [54, 12, 12, 38];
+    const [left, right, top, bottom] = [62, 12, 12, 38];
     const finite = lines.flatMap((line) => line.points.map(([, y]) => y)).filter(Number.isFinite);
     let [low, high] = [Math.min(...finite, ...bounds), Math.max(...finite, ...bounds)];
     if (low > high) [low, high] = [0, 1];

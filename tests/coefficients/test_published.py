@@ -1,25 +1,34 @@
-"""The published tables by numbers: each constant, and each erratum by what undoing it does.
+"""The published tables: each constant, and each erratum by what undoing it does.
 
-Listing 2 to 5 are transcribed here in plain Python: the judge of the forms that read the tables.
+Listings 2 to 5 are transcribed here in plain Python, and the forms that read the tables are compared
+with them.
 """
 
 import functools
 import hashlib
 import itertools
 import math
+from dataclasses import replace
 from math import cos, pi, sin
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from coefficients.catalogue import FOLDER, corrected, form_of, load
+from coefficients.catalogue import FOLDER, corrected, resolve
 from coefficients.table import Table, parse, read, serialise
-from fitting import Grid, RationalPs, RationalR, off_grid_errors, off_grid_reference
-from fitting.cells import fit_cells
-from fitting.errors import exact_values, form_values, measure
-from fitting.points.grids import trapezoid_grid
-from integrals import G
+from fitting import FittedForm, form_values, judge
+from fitting.errors import measure
+from fitting.form import traced
+from fitting.points.grids import Grid, trapezoid_grid
+from fitting.points.scattered import checking_points, judging_points
+from fitting.proofs.pole_proof import certify_denominators
+from fitting.proofs.range_proof import certify_range
+from integrals import PS, G
+from integrals.reference import box_of
+from programs import DenominatorBound, evaluate, subprogram
+from programs.bounding.denominators import TIGHTNESS, operands
+from quantities.fuzz.lights import light_directions
+from quantities.fuzz.supplement import RATIONAL_PS, RATIONAL_R, terms
 
 QUANTITIES = ("ps", "g", "q", "r")
 # SHA-256 of the constants as Python prints them, and their sum: a changed digit changes both.
@@ -34,17 +43,21 @@ CHECKSUMS = {
 
 @functools.cache
 def printed(quantity: str) -> Table:
-    return load(f"published/{quantity}@printed")
+    return resolve(f"published/{quantity}@printed").require_table()
 
 
 @functools.cache
 def mended(quantity: str) -> Table:
-    return load(f"published/{quantity}")
+    return resolve(f"published/{quantity}").require_table()
+
+
+def fitted(name: str) -> FittedForm:
+    return resolve(f"published/{name}").require_fitted()
 
 
 @functools.cache
 def errors(name: str):
-    return off_grid_errors(form_of(load(name)))
+    return judge(resolve(name).require_fitted())
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
@@ -56,7 +69,7 @@ def test_no_constant_has_changed(quantity):
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_the_files_are_as_the_tables_are_written(quantity):
-    path = FOLDER / "published" / f"{quantity}.json"
+    path = FOLDER / "fuzz" / "published" / f"{quantity}.json"
     assert serialise(read(path)) == path.read_text(encoding="utf-8")
 
 
@@ -128,8 +141,7 @@ LISTINGS = {
 
 def domain_points(form, count: int = 300) -> np.ndarray:
     random = np.random.default_rng(8)
-    lower = np.array([axis.lower for axis in form.axes])
-    upper = np.array([axis.upper for axis in form.axes])
+    lower, upper = box_of(form.axes).T
     unit = random.random((count, len(lower)))
     unit[:32] = np.round(unit[:32])
     return lower + (upper - lower) * unit
@@ -137,8 +149,7 @@ def domain_points(form, count: int = 300) -> np.ndarray:
 
 @pytest.mark.parametrize("name", [*(f"published/{q}" for q in QUANTITIES), "published/ps@printed"])
 def test_a_published_table_evaluates_as_its_listing_does(name):
-    table = load(name)
-    form = form_of(table)
+    table, form = resolve(name).require_table(), resolve(name).require_fitted()
     points = domain_points(form)
     expected = [LISTINGS[table.quantity](table.coefficients, *x) for x in points.tolist()]
     # Sums in another order: rounding of terms up to 50, over denominators down to 0.004.
@@ -176,7 +187,7 @@ def test_only_the_rows_of_c3_and_c4_are_exchanged():
 
 
 def materials(rows, alphas, thetas) -> np.ndarray:
-    """Give c₀ … c₅ (α, θf, 6) of Listing 2."""
+    """Return c₀ … c₅ (α, θf, 6) of Listing 2."""
     return np.array([[listing_2(rows, a, t) for t in thetas] for a in alphas])
 
 
@@ -184,14 +195,11 @@ ALPHAS = np.linspace(0.15, 1, 17)
 THETAS = np.linspace(0.1, pi / 2, 17)
 
 
-@functools.cache
-def cells():
-    grid = Grid(RationalPs.axes[:2], (ALPHAS, THETAS), np.full(289, 1 / 289), "uniform")
-    return fit_cells(grid, "uniform", 24)
-
-
-def test_corrected_rows_follow_the_best_of_every_cell_and_printed_ones_do_not():
-    best = np.asarray(cells().coefficients)
+def test_corrected_rows_follow_the_best_of_every_material_and_printed_ones_do_not():
+    grid = Grid(RATIONAL_PS.axes[:2], (ALPHAS, THETAS), np.full(289, 1 / 289), "uniform")
+    lights = light_directions(RATIONAL_PS.axes[2], 24, "uniform")
+    solver = replace(RATIONAL_PS.solver, rule=lambda _: lights)
+    best = np.asarray(solver.node_fits(RATIONAL_PS, grid, "uniform").optimum)
     apart = {
         name: np.sqrt(np.mean((materials(table.coefficients, ALPHAS, THETAS) - best) ** 2, (0, 1)))
         for name, table in (("printed", printed("ps")), ("corrected", mended("ps")))
@@ -216,10 +224,9 @@ def test_either_reading_of_the_thirteenth_entry_of_row_5_gives_the_same_function
     assert mended("ps").coefficients[5][12] == low
     rows = [list(row) for row in mended("ps").coefficients]
     rows[5][12] = high
-    form = form_of(mended("ps"))
-    other = RationalPs(jnp.asarray(rows))
-    points, _ = off_grid_reference(RationalPs)
-    apart = np.abs(form_values(form, points) - form_values(other, points)).max()
+    points, _ = judging_points(RATIONAL_PS)
+    other = form_values(RATIONAL_PS.fitted(np.array(rows)), points)
+    apart = np.abs(form_values(fitted("ps"), points) - other).max()
     assert 0 < apart < 1e-6
 
 
@@ -263,12 +270,12 @@ def test_with_the_corrected_exponent_the_published_constants_fit():
 
 
 def test_r_takes_alpha_as_given():
-    points, exact = off_grid_reference(RationalR)
+    points, exact = judging_points(RATIONAL_R)
     c = mended("r").coefficients
 
     def rms(alpha_of) -> float:
         values = [listing_5(c, alpha_of(a), t) for a, t in points.tolist()]
-        return measure(np.array(values) - exact, points, RationalR).rms
+        return measure(np.array(values) - exact, points, RATIONAL_R).rms
 
     assert rms(lambda alpha: alpha) == pytest.approx(errors("published/r").rms, rel=1e-9)
     # The parameter read as a spread, α = √spread: no fit at all.
@@ -287,15 +294,15 @@ def test_clamps_are_recorded_as_the_listings_have_them():
         "q": {"density": [None, 0.5]},
         "r": {"alpha": [0.15, 1.0], "theta_f": [0.0, pi / 2]},
     }
-    for table in map(mended, QUANTITIES):
-        axes = {axis.name: axis for axis in form_of(table).axes}
-        for name, (low, high) in table.publication.clamps.items():
+    for quantity in QUANTITIES:
+        axes = {axis.name: axis for axis in fitted(quantity).axes}
+        for name, (low, high) in mended(quantity).publication.clamps.items():
             assert axes[name].upper == high
             assert low in (None, axes[name].lower)
 
 
 def denominators(rows, alpha: float, theta_f: float) -> np.ndarray:
-    """Give those of Eq. (2) (6,), not clamped."""
+    """Return those of Eq. (2) (6,), not clamped."""
     b, g, d, b2, b3, g2, g3, _, d3 = powers(alpha, theta_f)
     x = [b, g, d, b2, g2, b * g, b * d, b3, g3, d3, b2 * g, b2 * d, b * g2]
     return 1 + np.array(rows)[:, 14:] @ x
@@ -312,13 +319,12 @@ def test_without_its_clamps_the_published_fit_of_ps_has_poles():
 
 
 def test_without_its_clamps_the_published_fit_of_ps_fails():
-    form = form_of(mended("ps"))
-    directions = trapezoid_grid(RationalPs.axes[2:], 33)
+    directions = trapezoid_grid(RATIONAL_PS.axes[2:], 33)
 
     def rms(alpha: float, theta_f: float) -> float:
         material = np.broadcast_to([alpha, theta_f], directions.points.shape)
         points = np.concatenate([material, directions.points], axis=1)
-        difference = form_values(form, points) - exact_values(form.integral, points)
+        difference = form_values(fitted("ps"), points) - PS.values(points)
         return float(np.sqrt(directions.weights @ difference**2))
 
     # 0.07087 is a zero of c₂'s denominator at α = 0.3, 0.09895 one of c₃'s in α at θf = 0.8.
@@ -357,8 +363,64 @@ def test_evaluation_of_printed_and_corrected_differ_only_in_the_products():
     theta_f = 0.6
     light = theta_f / 2  # halfway between normal and fibre
     point = np.array([[0.4, theta_f, light, 0.0]])
-    one, other = (form_values(form_of(table), point) for table in (printed("ps"), mended("ps")))
+    one, other = (form_values(fitted(name), point) for name in ("ps@printed", "ps"))
     assert one == pytest.approx(other, abs=1e-12)
     point[0, 2] = 0.1
-    one, other = (form_values(form_of(table), point) for table in (printed("ps"), mended("ps")))
+    one, other = (form_values(fitted(name), point) for name in ("ps@printed", "ps"))
     assert abs(one - other) > 1e-3
+
+
+# What is proven of the published tables
+
+
+def sampled_denominators(name: str, count: int) -> np.ndarray:
+    """Evaluate the divisors of a form on a grid of the axes that they depend on, ends included."""
+    form = fitted(name)
+    program = traced(form, form, form.axes)
+    lines = [
+        np.linspace(axis.lower, axis.upper, count if k < 2 else 1)
+        for k, axis in enumerate(form.axes)
+    ]
+    mesh = np.stack([each.ravel() for each in np.meshgrid(*lines, indexing="ij")], axis=1)
+    return evaluate(subprogram(program, operands(program, "div", 1)), mesh)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_published_forms_have_no_pole_and_a_bound_that_is_nearly_attained(quantity):
+    found = certify_denominators(fitted(quantity))
+    assert found.holds
+    if quantity == "q":
+        assert found == DenominatorBound(np.inf, 0)
+    else:
+        least = sampled_denominators(quantity, 60).min()
+        # The sampled least is above the true one, which is at most 1/TIGHTNESS times the bound.
+        assert TIGHTNESS * least * 0.95 <= found.bound <= least
+
+
+def test_the_denominators_are_those_of_the_equations():
+    c = mended("g").coefficients
+    d, nu = np.meshgrid(np.linspace(0.001, 0.5, 7), np.linspace(0.001, 1, 7), indexing="ij")
+    expected = np.ravel(d + c[2] * nu + c[3] * nu**3)
+    np.testing.assert_allclose(sampled_denominators("g", 7)[:, 0], expected, rtol=1e-14)
+    q = np.array(mended("ps").coefficients)[:, 14:]
+    alphas, thetas = (np.linspace(axis.lower, axis.upper, 5) for axis in RATIONAL_PS.axes[:2])
+    expected = [1 + q @ terms(a, t) for a in alphas for t in thetas]
+    np.testing.assert_allclose(
+        np.sort(sampled_denominators("ps", 5), axis=None), np.sort(expected, axis=None), rtol=1e-12
+    )
+
+
+def test_the_published_p_s_leaves_zero_to_one_and_that_is_not_proven_of_it():
+    values = form_values(fitted("ps"), checking_points(RATIONAL_PS, 77)[0])
+    # README states these.
+    assert values.min() < -0.04
+    assert values.max() > 1.05
+    assert certify_range(fitted("ps")) is None
+
+
+@pytest.mark.parametrize("quantity", ["g", "q", "r"])
+def test_the_other_published_forms_stay_between_zero_and_one(quantity):
+    found = certify_range(fitted(quantity))
+    values = form_values(fitted(quantity), checking_points(fitted(quantity).form, 77)[0])
+    assert found is not None
+    assert found.lower <= values.min() <= values.max() <= found.upper

@@ -1,120 +1,118 @@
-import jax
-import jax.numpy as jnp
+"""How far a form is from the exact values, and the search for the largest error."""
+
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from coefficients.catalogue import form_of, load
-from fitting.errors import (
-    OFF_GRID_SEED,
-    check_reference,
-    exact_estimates,
-    exact_values,
-    form_values,
-    measure,
-    off_grid_errors,
-    off_grid_reference,
-)
-from fitting.paper import PAPER_FORMS, QuadraticQ, RationalG, RationalR
-from fitting.points.grids import gauss_grid, off_grid_points, trapezoid_grid
-from fitting.points.scattered import COUNTS, spread_points
-from fitting.velvet import ConservativeNorm
-from integrals import INTEGRALS, PS, Q, R
+from coefficients.catalogue import resolve
+from fitting import Domain, form_values, judge
+from fitting.errors import HillClimbing, climb, measure
+from fitting.points.grids import sobol_points
+from fitting.points.scattered import OFF_GRID_SEED, checking_points, scattered_points
+from integrals.reference import box_of
+from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
+from tests.fitting.toys import AXES
 
-FORMS = {form.integral.name: form for form in (*PAPER_FORMS.values(), ConservativeNorm)}
-C = {"g": [-0.9, 0.4, 0.7, -0.26], "q": [-1.7, 1.2]}
+G = [-0.9, 0.4, 0.7, -0.26]
+Q = [-1.7, 1.2]
 
 
-def some_points(name: str, exponent: int) -> np.ndarray:
-    return off_grid_points(FORMS[name].axes, exponent, seed=11)
-
-
-@pytest.mark.parametrize("name", INTEGRALS)
-def test_exact_values_are_those_of_the_reference_leg(name):
-    points = some_points(name, 3)
-    integral = INTEGRALS[name]
-    value = jax.jit(integral.value)
-    expected = [float(value(*x)) for x in points]
-    # R by 32² nodes here, by 96² as the leg's own default: 2e-8 apart at most
-    tolerance = {"r": 2e-8}.get(name, 1e-15)
-    np.testing.assert_allclose(exact_values(integral, points), expected, rtol=0, atol=tolerance)
-    estimates = exact_estimates(integral, points)
-    np.testing.assert_allclose(estimates.value, expected, rtol=0, atol=tolerance)
-    assert (np.abs(estimates.value - np.array(expected)) <= np.asarray(estimates.error)).all()
-
-
-def test_r_is_exact_to_2e_8_where_the_errors_of_its_fits_are_measured():
-    # the corners and edges with the least α are where R is hardest
-    hardest = [(0.15, theta) for theta in np.linspace(0, np.pi / 2, 9)]
-    finer = jax.jit(lambda alpha, theta_f: R.quadrature(alpha, theta_f, nodes=128).value)
-    expected = [float(finer(*x)) for x in hardest]
-    np.testing.assert_allclose(exact_values(R, np.array(hardest)), expected, rtol=0, atol=2e-8)
+def fitted_form(name: str):
+    return resolve(name).require_fitted()
 
 
 def test_values_of_a_form_are_its_calls():
-    form = RationalG(jnp.array(C["g"]))
-    points = some_points("g", 4)
+    fitted = RATIONAL_G.fitted(np.array(G))
+    points = sobol_points(RATIONAL_G.axes, 4, seed=11)
     np.testing.assert_allclose(
-        form_values(form, points), [float(form(*x)) for x in points], rtol=1e-15
+        form_values(fitted, points), [float(fitted(*x)) for x in points], rtol=1e-15
     )
 
 
 def test_errors_are_the_weighted_rms_and_the_largest_with_its_place():
     points = np.array([[0.1, 0.2], [0.3, 0.4], [0.2, 0.9]])
-    found = measure(np.array([3.0, -5.0, 4.0]), points, RationalG)
+    found = measure(np.array([3.0, -5.0, 4.0]), points, RATIONAL_G)
     assert found.rms == pytest.approx((50 / 3) ** 0.5, rel=1e-15)
     assert (found.largest, found.where) == (5.0, {"density": 0.3, "cos_v": 0.4})
     assert found.points == 3
-    weighted = measure(np.array([3.0, -5.0, 4.0]), points, RationalG, np.array([0.25, 0.0, 0.75]))
+    weighted = measure(np.array([3.0, -5.0, 4.0]), points, RATIONAL_G, np.array([0.25, 0.0, 0.75]))
     assert weighted.rms == pytest.approx((9 / 4 + 12) ** 0.5, rel=1e-15)
-    # The largest error is one, whatever weight its point has.
+    # The weight of a point does not change which error is the largest.
     assert weighted.largest == 5.0
 
 
-def test_the_off_grid_set_is_fixed_and_no_grid_has_any_of_its_points():
-    points, exact = off_grid_reference(RationalG)
-    assert points.shape == (2**16, 2)
-    again = off_grid_points(RationalG.axes, COUNTS["g"].judged, seed=20200717)
-    np.testing.assert_array_equal(points, again)
-    first = exact_values(RationalG.integral, points[:64])
-    np.testing.assert_allclose(exact[:64], first, rtol=1e-14)
-    for make in (trapezoid_grid, gauss_grid):
-        for column, nodes in zip(points.T, make(RationalG.axes, 65).nodes, strict=True):
-            assert not np.isin(column, nodes).any()
-    # Enough points that the largest error is nearly found.
-    assert min(each.judged for each in COUNTS.values()) >= 12
-    assert off_grid_reference(RationalR)[0].shape[0] == 2 ** COUNTS["r"].judged
+def test_an_error_that_is_not_a_number_is_not_hidden():
+    difference = np.array([0.1, np.nan, 0.3])
+    found = measure(difference, np.array([[0.1], [0.2], [0.3]]), QUADRATIC_Q)
+    assert np.isnan([found.rms, found.largest]).all()
 
 
-def test_off_grid_errors_are_those_on_the_off_grid_set():
-    form = QuadraticQ(jnp.array(C["q"]))
-    found = off_grid_errors(form)
-    points = off_grid_points(QuadraticQ.axes, 16, seed=20200717)
+def test_a_form_is_judged_on_points_off_every_grid():
+    found = judge(QUADRATIC_Q.fitted(np.array(Q)))
+    points = sobol_points(QUADRATIC_Q.axes, 16, seed=20200717)
     d = points[:, 0]
-    difference = 1 + C["q"][0] * d + C["q"][1] * d**2 - exact_values(Q, points)
+    difference = 1 + Q[0] * d + Q[1] * d**2 - QUADRATIC_Q.reference.values(points)
     assert found.rms == pytest.approx(np.sqrt(np.mean(difference**2)), rel=1e-12)
-    # What is found uphill is no less, and for a parabola no more to speak of.
+    # Hill climbing finds no smaller error, and for a parabola hardly a larger one.
     assert found.largest >= np.abs(difference).max()
     assert found.largest == pytest.approx(np.abs(difference).max(), rel=1e-6)
     assert found.where["density"] == pytest.approx(d[np.argmax(np.abs(difference))], abs=1e-3)
 
 
-def test_a_ridge_between_the_points_is_found():
-    form = form_of(load("published/ps@printed"))
-    points, exact = check_reference(type(form), OFF_GRID_SEED)
-    without = np.abs(form_values(form, points) - exact).max()
-    assert off_grid_errors(form).largest > 1.05 * without
+def test_a_form_is_judged_on_another_domain_if_one_is_given():
+    fitted = RATIONAL_G.fitted(np.array(G))
+    density, cos_v = RATIONAL_G.axes
+    part = Domain(RATIONAL_G.reference, (density, replace(cos_v, lower=0.5)))
+    found, whole = judge(fitted, part), judge(fitted)
+    assert found.where["cos_v"] >= 0.5
+    assert found.largest < whole.largest
 
 
-@pytest.mark.parametrize("name", ["published/ps@printed", "best/ps-11", "best/ps-40"])
+def test_hill_climbing_finds_a_ridge_between_the_points():
+    fitted = fitted_form("published/ps@printed")
+    points, exact = checking_points(fitted.form, OFF_GRID_SEED)
+    without = np.abs(form_values(fitted, points) - exact).max()
+    assert judge(fitted).largest > 1.05 * without
+
+
+def hill(points: np.ndarray) -> np.ndarray:
+    """Return a peak of height 1 at (0.31, 0.77) and a lower one at (0.9, −0.5)."""
+    x, y = points.T
+    first = np.exp(-200 * ((x - 0.31) ** 2 + (y - 0.77) ** 2))
+    return first + 0.5 * np.exp(-200 * ((x - 0.9) ** 2 + (y + 0.5) ** 2))
+
+
+def test_hill_climbing_goes_up_from_the_worst_point_of_each_cell():
+    points = sobol_points(AXES, 8, seed=1)
+    sizes = hill(points)
+    top = climb(hill, points, sizes, AXES, seed=2)
+    assert len(top) == 4**2
+    assert hill(top).max() == pytest.approx(1, abs=1e-4)
+    assert np.sum(hill(top) > 0.49) >= 2
+    lower, upper = box_of(AXES).T
+    assert ((top >= lower) & (top <= upper)).all()
+    # No cell ends below its worst point.
+    assert hill(top).min() >= 0
+    np.testing.assert_array_equal(top, climb(hill, points, sizes, AXES, seed=2))
+
+
+def test_the_number_of_cells_is_chosen():
+    points = sobol_points(AXES, 8, seed=1)
+    assert len(HillClimbing(cells=2, steps=64)(hill, points, hill(points), AXES, 0)) == 4
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "best/ps-40",
+        pytest.param("published/ps@printed", marks=pytest.mark.slow),
+        pytest.param("best/ps-11", marks=pytest.mark.slow),
+    ],
+)
 def test_no_error_at_other_points_is_larger(name):
     """Of 400,000 other points none has an error that is larger by more than half a per cent."""
-    form = form_of(load(name))
-    points = spread_points("ps", type(form).axes, 17, seed=987)
-    other = np.abs(form_values(form, points) - exact_values(PS, points)).max()
-    assert other < 1.005 * off_grid_errors(form).largest
-
-
-def test_a_form_that_is_no_number_somewhere_has_an_error_that_is_none():
-    difference = np.array([0.1, np.nan, 0.3])
-    found = measure(difference, np.array([[0.1], [0.2], [0.3]]), QuadraticQ)
-    assert np.isnan([found.rms, found.largest]).all()
+    fitted = fitted_form(name)
+    points = scattered_points(fitted.reference, fitted.axes, 17, seed=987)
+    other = np.abs(form_values(fitted, points) - fitted.reference.values(points)).max()
+    assert other < 1.005 * judge(fitted).largest

@@ -1,68 +1,41 @@
+"""Proof that a form has no pole: what is certified has none, and what has one is refused."""
+
+import functools
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from fitting.families.ps import two_root_ps
-from fitting.paper import terms
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coefficients.catalogue import form_of, load
-from fitting import PAPER_FORMS, QuadraticQ, RationalG, RationalPs, RationalR
-from fitting.form import Form, as_program
-from fitting.proofs import pole_proof as certificate
-from fitting.proofs.pole_proof import TIGHTNESS, certify_denominators
-from programs.bounding import branch_and_bound as branch
-from programs.program import evaluate, part, reached
+from fitting import FittedForm
+from fitting.form import traced
+from fitting.proofs import pole_proof
+from fitting.proofs.pole_proof import certify_denominators, proof_axes
+from integrals.reference import box_of
+from programs import DenominatorBound, evaluate, prove_no_pole, subprogram
+from programs.bounding.denominators import TIGHTNESS, operands
+from quantities import problem
+from quantities.fuzz.material import COS_PHI
+from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G, RATIONAL_PS, RATIONAL_R
+from tests.fitting.toys import AXES, toy_form
 
-PUBLISHED = ("ps", "g", "q", "r")
 
-
-def sampled_denominators(form, count: int = 60) -> np.ndarray:
-    """Evaluate the divisors of a form on a dense grid of its domain, the ends included."""
-    program = as_program(form)
-    program = part(program, certificate.operands(program, "div", 1))
-    used = reached(program)
-    lines = [
-        np.linspace(axis.lower, axis.upper, count if k in used else 1)
-        for k, axis in enumerate(form.axes)
-    ]
+def sampled_denominators(fitted: FittedForm, count: int = 60) -> np.ndarray:
+    """Evaluate the divisors of a form of two axes on a dense grid, the ends included."""
+    program = traced(fitted, fitted, fitted.axes)
+    program = subprogram(program, operands(program, "div", 1))
+    lines = [np.linspace(axis.lower, axis.upper, count) for axis in fitted.axes]
     mesh = np.meshgrid(*lines, indexing="ij")
     return evaluate(program, np.stack([each.ravel() for each in mesh], axis=1))
 
 
-def rational_r(beta: float, gamma: float, delta: float) -> RationalR:
-    """Give R̃ with the denominator 1 + beta β + gamma γ + delta δ, and any numerator."""
-    return RationalR(jnp.array([0.3, *np.linspace(-0.2, 0.2, 13), beta, gamma, delta]))
+def rational_r(beta: float, gamma: float, delta: float) -> FittedForm:
+    """Return R̃ with the denominator 1 + beta β + gamma γ + delta δ, and any numerator."""
+    return RATIONAL_R.fitted(np.array([0.3, *np.linspace(-0.2, 0.2, 13), beta, gamma, delta]))
 
 
-@pytest.mark.parametrize("quantity", PUBLISHED)
-def test_published_forms_have_no_pole_and_a_bound_that_is_nearly_attained(quantity):
-    form = form_of(load(f"published/{quantity}"))
-    found = certify_denominators(form)
-    assert found.holds
-    if quantity == "q":
-        assert found == certificate.Certificate(np.inf, 0)
-    else:
-        least = sampled_denominators(form).min()
-        # The sampled least is above the true one, which is at least 0.9 times it.
-        assert TIGHTNESS * least * 0.95 <= found.bound <= least
-
-
-def test_the_denominators_are_those_of_the_equations():
-    values = sampled_denominators(form_of(load("published/g")), 7)
-    c = load("published/g").coefficients
-    d, nu = np.meshgrid(np.linspace(0.001, 0.5, 7), np.linspace(0.001, 1, 7), indexing="ij")
-    np.testing.assert_allclose(values[:, 0], np.ravel(d + c[2] * nu + c[3] * nu**3), rtol=1e-14)
-    form = form_of(load("published/ps"))
-    q = np.array(load("published/ps").coefficients)[:, 14:]
-    alphas, thetas = (np.linspace(axis.lower, axis.upper, 5) for axis in form.axes[:2])
-    expected = [1 + q @ terms(a, t) for a in alphas for t in thetas]
-    np.testing.assert_allclose(
-        np.sort(sampled_denominators(form, 5), axis=None), np.sort(expected, axis=None), rtol=1e-12
-    )
-
-
-# denominators of R̃ on α ∈ [0.15, 1], θf ∈ [0, π/2] that vanish somewhere, and their name
+# Denominators of R̃ on α ∈ [0.15, 1], θf ∈ [0, π/2] that vanish somewhere, and their name.
 POLES = {
     "on the edge α = 0.15": rational_r(-1 / 0.85, 0, 0),
     "on the edge θf = 0": rational_r(0, -1, 0),
@@ -73,9 +46,9 @@ POLES = {
     "touching zero between nodes": rational_r(0, -np.cos(0.7), -np.sin(0.7)),
     "crossing zero between nodes": rational_r(0, -1.00001 * np.cos(0.7), -1.00001 * np.sin(0.7)),
     "negative everywhere": rational_r(0, -2, -2),
-    "G, along a curve": RationalG(jnp.array([-0.9, 0.4, 0.7, -1.3])),
+    "G, along a curve": RATIONAL_G.fitted(np.array([-0.9, 0.4, 0.7, -1.3])),
     # d + c₂ν + c₃ν³ is least at ν = 0.1, d = 0.001: c₂/10 + c₃/1000 = −0.001001
-    "G, in a narrow dip": RationalG(jnp.array([-0.9, 0.4, -0.015015, 0.5005])),
+    "G, in a narrow dip": RATIONAL_G.fitted(np.array([-0.9, 0.4, -0.015015, 0.5005])),
     "not a number": rational_r(np.nan, 0, 0),
 }
 
@@ -85,24 +58,25 @@ def test_a_form_with_a_pole_is_not_certified(name):
     found = certify_denominators(POLES[name])
     assert not found.holds
     assert found.bound == -np.inf
-    # None of these needs the limit on the number of boxes to be seen through.
+    # None of these needs the limit on the number of boxes to be refused.
     assert found.boxes < 20_000
 
 
-def test_a_pole_between_the_nodes_of_the_finest_grid_is_not_seen_by_sampling():
-    """What the certificate is for: every sampled denominator is positive, yet one vanishes."""
-    for name in ("crossing zero between nodes", "G, in a narrow dip"):
-        assert sampled_denominators(POLES[name], 65).min() > 0
+@pytest.mark.parametrize("name", ["crossing zero between nodes", "G, in a narrow dip"])
+def test_samples_do_not_show_a_pole_between_the_nodes_of_the_finest_grid(name):
+    """This is why there is a proof: every sampled denominator is positive, yet one vanishes."""
+    assert sampled_denominators(POLES[name], 65).min() > 0
 
 
-def test_a_pole_in_the_first_or_the_last_row_of_ps_is_found():
-    good = np.array(load("published/ps").coefficients)
-    for row in (0, 5):
-        bad = good.copy()
-        # 1 + qᵀx with a double root at θf = 0.7, which no row's own sampling would show
-        bad[row, 14:] = 0
-        bad[row, [15, 16]] = [-1.0001 * np.cos(0.7), -1.0001 * np.sin(0.7)]
-        assert not certify_denominators(RationalPs(jnp.asarray(bad))).holds
+@pytest.mark.parametrize("row", [0, 5])
+def test_a_pole_in_any_row_of_p_s_is_found(row):
+    rows = np.zeros((6, 27))
+    rows[:, :14] = np.linspace(-0.2, 0.2, 14)
+    rows[:, 15] = 0.3
+    assert certify_denominators(RATIONAL_PS.fitted(rows)).holds
+    # 1 + qᵀx with a double root at θf = 0.7, which no row's own sampling would show
+    rows[row, [15, 16]] = [-1.0001 * np.cos(0.7), -1.0001 * np.sin(0.7)]
+    assert not certify_denominators(RATIONAL_PS.fitted(rows)).holds
 
 
 SLOPES = st.floats(0.01, 1.5) | st.floats(-1.5, -0.01)
@@ -110,9 +84,9 @@ SLOPES = st.floats(0.01, 1.5) | st.floats(-1.5, -0.01)
 
 @settings(max_examples=20, deadline=None)
 @given(st.tuples(SLOPES, SLOPES, SLOPES))
-def test_what_is_certified_is_positive_and_what_is_refused_is_not(slopes):
-    form = rational_r(*slopes)
-    found, least = certify_denominators(form), sampled_denominators(form, 101).min()
+def test_certified_denominators_are_positive_and_refused_ones_nearly_vanish(slopes):
+    fitted = rational_r(*slopes)
+    found, least = certify_denominators(fitted), sampled_denominators(fitted, 101).min()
     if found.holds:
         assert 0.9 * TIGHTNESS * least <= found.bound <= least
     else:
@@ -120,82 +94,71 @@ def test_what_is_certified_is_positive_and_what_is_refused_is_not(slopes):
         assert least <= 5 * 0.016
 
 
-def test_a_nearly_vanishing_denominator_is_still_certified_tightly():
-    # 1 − 0.9999 cos(θf − 0.7): least 1e-4, between the nodes
-    found = certify_denominators(rational_r(0, -0.9999 * np.cos(0.7), -0.9999 * np.sin(0.7)))
+# 1 − 0.9999 cos(θf − 0.7): least 1e-4, between the nodes
+NEARLY = rational_r(0, -0.9999 * np.cos(0.7), -0.9999 * np.sin(0.7))
+
+
+def test_a_nearly_vanishing_denominator_is_still_bounded_tightly():
+    found = certify_denominators(NEARLY)
     assert found.holds
     assert TIGHTNESS * 1e-4 <= found.bound <= 1e-4 * (1 + 1e-9)
 
 
-def test_a_search_that_finds_no_end_is_given_up_as_not_proven(monkeypatch):
-    monkeypatch.setattr(branch, "MAX_BOXES", 10)
-    form = rational_r(0, -0.9999 * np.cos(0.7), -0.9999 * np.sin(0.7))
-    assert not certify_denominators(form).holds
+def test_a_bound_that_is_enough_is_found_with_fewer_boxes():
+    enough, tight = certify_denominators(NEARLY, 1e-6), certify_denominators(NEARLY)
+    assert 1e-6 <= enough.bound <= tight.bound
+    assert enough.boxes < tight.boxes
 
 
-@pytest.mark.parametrize("form", PAPER_FORMS.values(), ids=PAPER_FORMS)
-def test_the_program_of_a_form_is_the_form(form):
-    random = np.random.default_rng(1)
-    c = random.uniform(0.1, 0.3, np.shape(form.coefficient_names()))
-    fitted = form(jnp.asarray(c))
-    lower = np.array([axis.lower for axis in form.axes])
-    upper = np.array([axis.upper for axis in form.axes])
-    at = lower + (upper - lower) * random.random((20, len(lower)))
-    values = evaluate(as_program(fitted), at)[:, 0]
-    np.testing.assert_allclose(values, [float(fitted(*x)) for x in at], rtol=1e-13)
+def test_a_search_that_reaches_its_limit_proves_nothing(monkeypatch):
+    limited = functools.partial(prove_no_pole, max_boxes=10)
+    monkeypatch.setattr(pole_proof, "prove_no_pole", limited)
+    assert not certify_denominators(NEARLY).holds
 
 
 def test_a_form_without_divisions_needs_no_boxes():
-    found = certify_denominators(QuadraticQ(jnp.array([-1.7, 1.2])))
+    found = certify_denominators(QUADRATIC_Q.fitted(np.array([-1.7, 1.2])))
+    assert found == DenominatorBound(np.inf, 0)
     assert found.holds
-    assert found.boxes == 0
 
 
-def test_a_floor_hides_no_pole():
+TWO_ROOT = problem("ps").form("two-root-ps", {"terms": 3, "degree": 0, "least_alpha": 0.15})
+
+
+def test_a_floor_of_a_denominator_hides_no_pole():
     """The floor of the denominator is reached: the value at this point is 112,650."""
-    form = two_root_ps(terms=3, degree=0, least_alpha=0.15)(jnp.array([0.3, -3.0, 0.0]))
-    assert abs(float(form(0.5, 0.3, 0.2, 0.0))) > 1e5
-    assert not certify_denominators(form).holds
+    fitted = TWO_ROOT.fitted(np.array([0.3, -3.0, 0.0]))
+    assert abs(float(fitted(0.5, 0.3, 0.2, 0.0))) > 1e5
+    assert not certify_denominators(fitted).holds
 
 
-# Functions of d on [0, 0.5] that are infinite or no number somewhere, and ones that are not.
+def test_proofs_may_take_other_axes_than_the_form():
+    assert proof_axes(TWO_ROOT) == (*TWO_ROOT.axes[:3], COS_PHI)
+    assert proof_axes(RATIONAL_R) == RATIONAL_R.axes
+    assert box_of(proof_axes(TWO_ROOT))[3].tolist() == [-1, 1]
+
+
+# Functions of y on [−1, 2] that are infinite or no number somewhere, and ones that are not.
 SINGULAR = {
-    "a root of less than nothing": lambda d: jnp.sqrt((d - 0.3) ** 2 - 1e-9),
-    "a logarithm of nothing": jnp.log,
-    "a quotient within a root": lambda d: jnp.sqrt(1 / (d - 0.2) ** 2),
+    "the root of a negative number": lambda y: jnp.sqrt((y - 0.3) ** 2 - 1e-9),
+    "the logarithm of zero": lambda y: jnp.log(y + 1),
+    "a quotient within a root": lambda y: jnp.sqrt(1 / (y - 0.2) ** 2),
 }
 REGULAR = {
-    "a root of nothing": jnp.sqrt,
-    "a logarithm that is kept from zero": lambda d: d * jnp.log(jnp.maximum(d, 1e-30)),
-    "a quotient that is kept from zero": lambda d: 1 / jnp.maximum(d - 0.2, 1e-3),
+    "the root of zero": lambda y: jnp.sqrt(y + 1),
+    "a logarithm that is kept from zero": lambda y: y * jnp.log(jnp.maximum(y + 1, 1e-30)),
+    "a quotient that is kept from zero": lambda y: 1 / jnp.maximum(y - 0.2, 1e-3),
 }
-
-
-def form_of_d(call) -> type[Form]:
-    class OfD(Form):
-        """A function of d."""
-
-        name = "of-d"
-        equation = ""
-        integral = QuadraticQ.integral
-        axes = QuadraticQ.axes
-
-        def __call__(self, d):
-            return call(d)
-
-        @classmethod
-        def coefficient_names(cls):
-            return []
-
-    return OfD
 
 
 @pytest.mark.parametrize("name", [*SINGULAR, *REGULAR])
 def test_roots_and_logarithms_are_certified_too(name):
-    form = form_of_d((SINGULAR | REGULAR)[name])(jnp.zeros(0))
-    assert certify_denominators(form).holds == (name in REGULAR)
+    call = (SINGULAR | REGULAR)[name]
+    form = toy_form(lambda c, y: call(y), [], axes=AXES[1:])
+    assert certify_denominators(form.fitted(np.zeros(0))).holds == (name in REGULAR)
 
 
-def test_what_may_have_a_pole_of_its_own_is_refused():
+def test_an_operation_with_poles_of_its_own_is_refused():
+    form = toy_form(lambda c, y: jnp.tan(4 * y), [], axes=AXES[1:])
     with pytest.raises(ValueError, match=r"operation 'tan' .* has no meaning here"):
-        certify_denominators(form_of_d(lambda d: jnp.tan(4 * d))(jnp.zeros(0)))
+        certify_denominators(form.fitted(np.zeros(0)))

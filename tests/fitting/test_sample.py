@@ -3,20 +3,19 @@
 import numpy as np
 import pytest
 
-from fitting import Goal, improve
-from fitting.errors import form_values, off_grid_reference
-from fitting.families.ps import one_root_ps
-from fitting.paper import QuadraticQ, RationalPs
-from fitting.points.grids import off_grid_points
-from fitting.points.sample import sample_of, scale_at
+from fitting import Goal
+from fitting.points.grids import sobol_points
+from fitting.points.sample import SEED, sample_at, sample_of, scale_at
+from fitting.points.scattered import scattered_points
+from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G, RATIONAL_PS
 
-POINTS = off_grid_points(RationalPs.axes, 6, seed=3)
+POINTS = sobol_points(RATIONAL_PS.axes, 6, seed=3)
 THETA = POINTS[:, 2]
 EXACT = np.linspace(0.1, 0.9, len(POINTS))
 
 
 @pytest.mark.parametrize(
-    ("goal", "weight", "expected"),
+    ("goal", "measure", "expected"),
     [
         (Goal(), "uniform", np.ones_like(THETA)),
         (Goal(), "solid-angle", np.sqrt(np.sin(THETA))),
@@ -26,25 +25,31 @@ EXACT = np.linspace(0.1, 0.9, len(POINTS))
         (Goal("linf", relative=True), "cosine", np.cos(THETA) / EXACT),
     ],
 )
-def test_errors_are_scaled_by_the_measure_and_the_value(goal, weight, expected):
-    found = scale_at(POINTS, EXACT, RationalPs, goal, weight)
+def test_errors_are_scaled_by_the_measure_and_the_value(goal, measure, expected):
+    found = scale_at(POINTS, EXACT, RATIONAL_PS, goal, measure)
     np.testing.assert_allclose(found, expected, rtol=1e-15)
 
 
-def test_quantities_without_a_light_have_no_weight():
-    plain, weighted = (sample_of(QuadraticQ, Goal(), weight) for weight in ("uniform", "cosine"))
-    np.testing.assert_array_equal(plain.scale, weighted.scale)
-    np.testing.assert_array_equal(plain.scale, 1)
+def test_the_uniform_measure_weighs_all_errors_alike():
+    np.testing.assert_array_equal(sample_of(QUADRATIC_Q, Goal(), "uniform").scale, 1)
 
 
-@pytest.mark.slow
-def test_a_weight_lowers_the_weighted_error():
-    form = one_root_ps(skew=0, degree=1, least_alpha=0.15)
-    points, exact = off_grid_reference(form)
-    density = np.sin(points[:, 2]) * np.cos(points[:, 2])
+def test_the_sample_of_a_form_is_the_scattered_points_of_its_quantity():
+    found, reference = sample_of(RATIONAL_G), RATIONAL_G.reference
+    points = scattered_points(reference, RATIONAL_G.axes, reference.sampling.fitted, SEED)
+    np.testing.assert_array_equal(found.points, points)
+    np.testing.assert_array_equal(found.exact, reference.values(points))
+    assert 0 < found.error < 1e-12
 
-    def rms(weight):
-        difference = form_values(improve(form, Goal(), weight=weight).form, points) - exact
-        return np.sqrt(np.average(difference**2, weights=density))
 
-    assert rms("cosine") < 0.99 * rms("uniform")
+def test_a_sample_is_extended_by_points_elsewhere():
+    goal = Goal("linf", relative=True)
+    first = sample_of(QUADRATIC_Q, goal)
+    points = np.array([[0.1], [0.37]])
+    other = sample_at(points, QUADRATIC_Q, goal, "uniform")
+    np.testing.assert_allclose(other.scale, 1 / QUADRATIC_Q.reference.values(points))
+    both = first.extended(other)
+    np.testing.assert_array_equal(both.points, np.concatenate([first.points, points]))
+    np.testing.assert_array_equal(both.exact, np.concatenate([first.exact, other.exact]))
+    np.testing.assert_array_equal(both.scale, np.concatenate([first.scale, other.scale]))
+    assert both.error == max(first.error, other.error)

@@ -7,8 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from integrals import PS, REFERENCES, Axis, Estimate, Reference, Sampling
-from integrals.reference import box_of, in_batches, leg, require_float64
+from integrals import PS, REFERENCES, Axis, Estimate, R, Reference, Sampling
+from integrals.reference import box_of, in_batches, leg, require_float64, restricted
 from tests.integrals.problems import KNOWN_VALUES, RIGHT
 
 # A correct Monte Carlo estimate exceeds this many standard errors once in 1.7 million trials.
@@ -127,14 +127,14 @@ def test_missing_leg_is_none():
     assert list(REFERENCES["r"].legs) == ["quadrature", "monte_carlo"]
 
 
-HALF_OPEN = Axis("alpha", "α", "1", 0.0, 1.0, "", open_below=True)
-UNBOUNDED = Axis("density", "d", "1", 0.0, np.inf, "")
+HALF_OPEN = Axis("alpha", 0.0, 1.0, "α", open_below=True)
+UNBOUNDED = Axis("density", 0.0, np.inf, "d")
 
 
 def test_domain_is_written_as_an_interval():
     assert HALF_OPEN.domain == "(0, 1]"
     assert UNBOUNDED.domain == "[0, ∞)"
-    assert Axis("theta", "θ", "rad", 0.0, RIGHT, "").domain == "[0, 1.5708]"
+    assert Axis("theta", 0.0, RIGHT, "θ", "rad", "").domain == "[0, 1.5708]"
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ ENDS = [(0.001, 0.5), (0.05, 1.0), (0.1, 0.7), (1 / 3, 1e5), (3e-7, RIGHT)]
 @pytest.mark.parametrize("scale", ["linear", "logarithmic", "square"])
 @pytest.mark.parametrize(("lower", "upper"), ENDS)
 def test_place_maps_fractions_to_the_domain_with_exact_ends(scale, lower, upper):
-    axis = Axis("x", "x", "1", lower, upper, "", scale=scale)
+    axis = Axis("x", lower, upper, scale=scale)
     ends = axis.place(np.array([0.0, 1.0]))
     np.testing.assert_array_equal(ends, [lower, upper])
     near = axis.place(np.array([0.0, 5e-324, 1e-16, 0.5, np.nextafter(1, 0), 1.0]))
@@ -181,7 +181,7 @@ def test_place_maps_fractions_to_the_domain_with_exact_ends(scale, lower, upper)
 
 def test_place_follows_the_scale():
     fractions = np.array([0.25, 0.5, 0.75])
-    axis = functools.partial(Axis, "x", "x", "1", 0.01, 100.0, "")
+    axis = functools.partial(Axis, "x", 0.01, 100.0)
     np.testing.assert_allclose(axis().place(fractions), [25.0075, 50.005, 75.0025], rtol=1e-15)
     logarithmic = axis(scale="logarithmic").place(fractions)
     np.testing.assert_allclose(logarithmic, [0.1, 1.0, 10.0], rtol=1e-14)
@@ -214,7 +214,7 @@ def test_aliases_are_short_names_of_axes():
         assert len(set(names)) == len(names)
 
 
-LINE = Axis("x", "x", "1", 0.0, 1.0, "")
+LINE = Axis("x", 0.0, 1.0)
 
 
 def doubling(batch: int) -> tuple[Reference, list[int]]:
@@ -290,3 +290,16 @@ def test_in_batches_joins_all_results():
     assert sizes == [3, 3, 3]
     np.testing.assert_array_equal(first, points[:, 0])
     np.testing.assert_array_equal(table, points @ np.ones((2, 3)))
+
+
+def test_axes_are_restricted_by_name():
+    alpha, theta_f = restricted(R.axes, alpha=(0.15, 1.0))
+    assert (alpha.lower, alpha.upper, alpha.open_below) == (0.15, 1.0, False)
+    assert theta_f is R.axes[1]
+    # The open end stays open where it is kept.
+    assert restricted(R.axes, alpha=(0.0, 0.5))[0].open_below
+    with pytest.raises(ValueError, match="'density' is no axis: allowed are alpha, theta_f"):
+        restricted(R.axes, density=(0.0, 1.0))
+    for domain in ((-0.1, 1.0), (0.5, 0.5), (0.5, 1.1)):
+        with pytest.raises(ValueError, match=r"allowed is part of \(0, 1\]"):
+            restricted(R.axes, alpha=domain)

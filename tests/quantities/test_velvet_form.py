@@ -2,22 +2,24 @@
 
 import functools
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from coefficients.shaders import functions_of
-from fitting.velvet import MARGIN, ConservativeNorm, certify_conservative, fit_conservative_norm
-from programs.function import Function, Parameter
 
-from coefficients.catalogue import form_of, load
+from coefficients.catalogue import resolve
+from fitting import FittedForm
 from fitting.points.grids import trapezoid_grid
 from fitting.proofs.pole_proof import certify_denominators
 from integrals import VELVET
 from integrals.fuzz.velvet import normalisation
-from programs.program import evaluate
-from programs.tracing.tracer import trace
+from programs import Function, Parameter, evaluate, trace
+from quantities.fuzz.velvet_form import (
+    CONSERVATIVE_NORM,
+    MARGIN,
+    certify_conservative,
+    fit_conservative_norm,
+)
 
 EPS = np.finfo(float).eps
 DOMAIN_END = 0.95
@@ -26,10 +28,10 @@ VALUE = jax.jit(jax.vmap(VELVET.value))
 
 
 @functools.cache
-def fitted(count) -> ConservativeNorm:
-    grid = trapezoid_grid(ConservativeNorm.axes, count)
+def fitted(count) -> FittedForm:
+    grid = trapezoid_grid(CONSERVATIVE_NORM.axes, count)
     exact = VALUE(jnp.asarray(grid.points[:, 0]))
-    return ConservativeNorm(fit_conservative_norm(grid, exact))
+    return CONSERVATIVE_NORM.fitted(fit_conservative_norm(grid, exact))
 
 
 @pytest.mark.parametrize("count", [9, pytest.param(65, marks=pytest.mark.slow)])
@@ -46,10 +48,10 @@ def test_fit_loses_little_energy_and_creates_none(count):
 
 
 def test_table_and_float32_code_create_no_energy():
-    table = load("velvet")
-    form = form_of(table)
-    assert certify_conservative(form).bound == table.certificates.conservative_bound > 0
-    (exported,) = functions_of(table)
+    entry = resolve("velvet")
+    stated = entry.require_table().certificates.conservative_bound
+    assert certify_conservative(entry.require_fitted()).bound == stated > 0
+    (exported,) = entry.functions()
     k = (-DOMAIN_END * np.random.default_rng(4).random(100_000)).astype(np.float32)
     values = np.ravel(evaluate(trace(exported), k[:, None], np.float32))
     # Rounding may exceed the limit by less than the last bit of one.
@@ -62,8 +64,7 @@ def test_fit_that_creates_energy_is_not_certified():
     assert 0 < bound <= MARGIN
     for coefficient, below in ((0, 2 * MARGIN), (1, 1e-4), (2, 1e-3)):
         lower = form.coefficients.at[coefficient].add(-below)
-        wrong = eqx.tree_at(lambda form: form.coefficients, form, lower)
-        assert not certify_conservative(wrong).holds
+        assert not certify_conservative(CONSERVATIVE_NORM.fitted(lower)).holds
 
 
 def test_exact_factor_can_be_exported_as_shader_code():

@@ -1,20 +1,31 @@
+"""What is proven of a table, in words: no number says more than is proven."""
+
 import json
 import re
 
 import pytest
 
-from coefficients.catalogue import load, names
-from coefficients.proven import proofs, proven
+from coefficients.catalogue import Entry, names, resolve
+from coefficients.proof_text import proof_text, proofs
 from coefficients.table import serialise
 
-PROVEN = [name for name in names() if load(name).certificates is not None]
+
+def certificates_of(name: str):
+    return resolve(name).require_table().certificates
+
+
+def data_of(name: str) -> dict:
+    return json.loads(serialise(resolve(name).require_table()))
+
+
+PROVEN = [name for name in names() if certificates_of(name) is not None]
 NUMBER = r"[-+.\de]+"
 
 
 @pytest.mark.parametrize("name", PROVEN)
 def test_no_number_says_more_than_is_proven(name):
-    certificates = load(name).certificates
-    text = "; ".join(proven(certificates))
+    certificates = certificates_of(name)
+    text = "; ".join(proof_text(certificates))
     bound = re.search(rf"denominators ≥ ({NUMBER})", text)
     assert (bound is None) == (certificates.denominator_bound is None)
     if bound is not None:
@@ -34,28 +45,27 @@ def test_no_number_says_more_than_is_proven(name):
 
 
 def test_one_sided_tables_say_so():
-    assert "none above the exact value" in proven(load("velvet").certificates)
-    assert not any("above" in each for each in proven(load("best/r-25").certificates))
+    assert "none above the exact value" in proof_text(certificates_of("velvet"))
+    assert not any("above" in each for each in proof_text(certificates_of("best/r-25")))
 
 
 def test_nothing_is_proven_of_what_was_published():
-    assert proven(load("published/g").certificates) == []
+    assert proof_text(certificates_of("published/g")) == []
 
 
-def written(path, name: str, **changes) -> str:
-    data = json.loads(serialise(load(name)))
-    path.write_text(json.dumps(data | changes))
-    return str(path)
+def written(path, name: str, **changes) -> Entry:
+    """Write a changed copy of a table to a file, and resolve that."""
+    path.write_text(json.dumps(data_of(name) | changes))
+    return resolve(str(path))
 
 
 def test_what_a_file_says_of_itself_is_no_proof(tmp_path):
-    table = json.loads(serialise(load("best/q-9")))
-    c = table["coefficients"]
+    c = data_of("best/q-9")["coefficients"]
     said = {"denominator_bound": 5.0, "boxes": 1, "range": [0.2, 0.9]}
     lies = written(tmp_path / "lies.json", "best/q-9", certificates=said)
     found = proofs(lies)
     assert "5" not in found[0]
-    assert found[1:] == proofs("best/q-9")[1:]
+    assert found[1:] == proofs(resolve("best/q-9"))[1:]
     poles = written(
         tmp_path / "poles.json",
         "best/q-9",
@@ -66,8 +76,7 @@ def test_what_a_file_says_of_itself_is_no_proof(tmp_path):
 
 
 def test_a_file_that_says_falsely_that_it_loses_energy_is_not_believed(tmp_path):
-    table = json.loads(serialise(load("velvet")))
-    lower = [c - 0.01 for c in table["coefficients"]]
+    lower = [c - 0.01 for c in data_of("velvet")["coefficients"]]
     found = proofs(written(tmp_path / "bright.json", "velvet", coefficients=lower))
     assert found
     assert "none above the exact value" not in found
@@ -75,7 +84,7 @@ def test_a_file_that_says_falsely_that_it_loses_energy_is_not_believed(tmp_path)
 
 @pytest.mark.parametrize("name", ["q", "best/g-9", "velvet"])
 def test_a_copy_of_a_table_proves_as_much(name, tmp_path):
-    assert proofs(written(tmp_path / "copy.json", name)) == proofs(name)
+    assert proofs(written(tmp_path / "copy.json", name)) == proofs(resolve(name))
 
 
 @pytest.mark.parametrize(
@@ -88,6 +97,10 @@ def test_a_copy_of_a_table_proves_as_much(name, tmp_path):
     ],
 )
 def test_certificates_that_prove_nothing_are_refused(certificates, tmp_path):
-    path = written(tmp_path / "odd.json", "best/q-9", certificates=certificates)
     with pytest.raises(ValueError, match="certificates"):
-        load(path)
+        written(tmp_path / "odd.json", "best/q-9", certificates=certificates)
+
+
+def test_a_closed_form_has_nothing_to_prove():
+    with pytest.raises(ValueError, match="exact/q has no coefficients"):
+        proofs(resolve("exact/q"))

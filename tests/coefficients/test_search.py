@@ -1,0 +1,118 @@
+"""A search among forms: what is tried, kept, refused and named."""
+
+from dataclasses import replace
+
+import pytest
+
+from coefficients import search
+from coefficients.catalogue import entries, resolve
+from coefficients.search import Search
+from coefficients.table import read
+from fitting import Goal
+from quantities import problem
+
+GOAL = Goal("l2", rounding="float32")
+
+
+def of(folder, quantity: str = "q", budget: int | None = 4, **options) -> Search:
+    return Search(problem(quantity), options.pop("goal", GOAL), folder, budget, **options)
+
+
+def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, monkeypatch):
+    told = []
+    found = of(tmp_path).run(told.append)
+    assert 2 <= len(found.best) <= len(found.found)
+    assert all(each.operations <= 4 for each in found.found)
+    costs, errors = zip(*((each.operations, each.largest) for each in found.best), strict=True)
+    assert list(costs) == sorted(set(costs))
+    assert list(errors) == sorted(errors, reverse=True)
+    assert errors[-1] < found.published.largest
+    assert [each.name for each in found.exact] == ["closed form"]
+    assert told[0].startswith("0 forms; ") and any(each.startswith("1 forms; ") for each in told)
+    # Every table is an ordinary one.
+    for each in found.found:
+        entry = resolve(each.file)
+        assert entry.require_table().name == each.name
+        assert entry.require_table().errors.off_grid.max == each.largest
+    # Again: nothing is fitted, and the same is found.
+    monkeypatch.setattr(search, "fit", None)
+    assert of(tmp_path).run() == found
+    # A goal of another kind is another search.
+    with pytest.raises(TypeError):
+        of(tmp_path, goal=Goal("l2")).run()
+
+
+def test_a_table_of_another_form_under_the_same_name_is_not_taken(tmp_path, monkeypatch):
+    form = next(problem("q").candidates({}))
+    name = of(tmp_path).name_of(form)
+    table = resolve("best/q-9").require_table()
+    (tmp_path / f"{name}.json").write_text(search.serialise(table))
+    monkeypatch.setattr(search, "fit", None)
+    with pytest.raises(TypeError):
+        of(tmp_path).run()
+
+
+def test_a_refused_form_is_not_tried_again(tmp_path, monkeypatch):
+    def refuse(*_, **__):
+        raise ValueError("it has a pole")
+
+    monkeypatch.setattr(search, "fit", refuse)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="no form of q was found within 4 operations"):
+            of(tmp_path).run()
+        # From now on an attempt would be a TypeError.
+        monkeypatch.setattr(search, "fit", None)
+    reasons = list(tmp_path.glob("*.refused.txt"))
+    assert reasons
+    assert {path.read_text() for path in reasons} == {"it has a pole\n"}
+
+
+def test_refused_forms_are_counted(tmp_path, monkeypatch):
+    fit, forms = search.fit, []
+
+    def refuse_the_first(form, *arguments, **options):
+        forms.append(form)
+        if len(forms) == 1:
+            raise ValueError("it has a pole")
+        return fit(form, *arguments, **options)
+
+    monkeypatch.setattr(search, "fit", refuse_the_first)
+    found = of(tmp_path, budget=3).run()
+    assert found.refused == 1
+    assert len(found.found) == len(forms) - 1
+    assert read(tmp_path / f"{found.found[0].name}.json").form == found.found[0].form
+
+
+def test_no_form_within_the_budget_is_an_error(tmp_path):
+    with pytest.raises(ValueError, match="no form of q was found within 1 operations"):
+        of(tmp_path, budget=1).run()
+    assert not list(tmp_path.iterdir())
+
+
+def test_names_are_those_of_shape_and_goal(tmp_path):
+    forms = list(problem("q").candidates({}))
+    names = [of(tmp_path).name_of(form) for form in forms]
+    assert len(set(names)) == len(names)
+    assert all(name.startswith("pole-q-") for name in names)
+    assert names == [of(tmp_path / "other").name_of(form) for form in forms]
+    other = of(tmp_path, goal=replace(GOAL, rounding="none"))
+    assert not set(names) & {other.name_of(form) for form in forms}
+
+
+def test_a_search_of_r_begins_with_the_best_forms_of_the_same_domain(tmp_path):
+    best = [e.require_fitted().form for e in entries(problem("r")) if e.kind == "best"]
+    for least in (0.15, 0.05):
+        wanted = [form for form in best if form.axes[0].lower == least]
+        tried = of(tmp_path, "r", lower={"alpha": least}).candidates()
+        assert [next(tried) for _ in wanted] == wanted
+
+
+def test_the_published_table_is_judged_where_the_candidates_are(tmp_path):
+    """The largest errors of P_s are those of the least α."""
+    lower = {"alpha": 0.3}
+    form = next(of(tmp_path, "ps", lower=lower).candidates())
+    part = of(tmp_path, "ps", lower=lower)._published(form)
+    whole = of(tmp_path, "ps")._published(problem("ps").default)
+    assert part.largest < 0.9 * whole.largest
+    assert part.rms < whole.rms
+    assert whole.operations == part.operations
