@@ -135,6 +135,7 @@ class Reference:
     `sampling` says how many points forms are fitted on, checked at and judged by. `batch` is the
     number of points that `estimates` evaluates at once. `options_at` takes points (n, axes) and
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
+    `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
     """
 
     name: str
@@ -148,6 +149,7 @@ class Reference:
     monte_carlo: Leg | None = None
     batch: int = 8192
     options_at: Callable[[np.ndarray], dict[str, Any]] = lambda _: {}
+    codomain: tuple[float, float] = (0.0, 1.0)
 
     @property
     def legs(self) -> dict[str, Leg]:

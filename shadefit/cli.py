@@ -1,4 +1,4 @@
-"""The command line `shadefit`: its commands are in `shadefit.commands`."""
+"""The command line `shadefit`, which consists of the commands in `shadefit.commands`."""
 
 import functools
 import inspect
@@ -121,10 +121,10 @@ def _global(
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line; exit status 2 with one line on standard error for bad input."""
-    # Whatever the environment says: the references refuse to run without.
+    """Run the command line. Bad input gives one line on standard error and exit status 2."""
+    # The references need float64. A setting of the environment is overwritten.
     os.environ["JAX_ENABLE_X64"] = "1"
-    # One thread: more would change the order of sums, and so the last digits, with the machine.
+    # With more threads, the order of sums, and so their last digits, would depend on the machine.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     given = sys.argv[1:] if arguments is None else arguments
     try:
@@ -133,7 +133,8 @@ def main(arguments: list[str] | None = None) -> None:
         message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
         _fail(message, 2)
     except BrokenPipeError:
-        # The reader of our output has gone: not an error, but Python would complain at exit.
+        # The program that reads the output has ended. This is not an error, but Python would print
+        # a message at exit if the output were not redirected.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(0)
     except Exception as error:
@@ -147,7 +148,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _fail(message: str, status: int) -> None:
-    # Typer leaves in what its validator calls the kind of an error.
+    # Typer puts the kind of an error into its message; it does not help the user.
     words = message.replace(": Value error, ", ": ").split()
     print(f"shadefit: {' '.join(words)}", file=sys.stderr)
     sys.exit(status)
