@@ -81,6 +81,10 @@ CONTRADICTIONS = {
         {"coefficient_names": G_NAMES[::-1]},
         "the name of coefficient 0 as 'c3: ν³', form 'rational-g' has 'c0: dν'",
     ),
+    "a weight that the quantity does not have": (
+        {"weight": "cosine"},
+        r"the weight as 'cosine', form 'rational-g' has \['uniform'\]",
+    ),
     "a long name": (
         {"coefficient_names": [*G_NAMES[:3], "c" * 2000]},
         r"the name of coefficient 3 as 'c+\.\.\.c+', form",

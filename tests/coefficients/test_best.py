@@ -72,7 +72,7 @@ def faults(fitted: FittedForm, entry: Entry) -> Iterator[str]:
         where = tuple(each.where[axis.name] for axis in fitted.axes)
         (value,) = form_values(fitted, np.array([where]))
         apart = abs(value - exact_at(name, where, fitted.axes))
-        if not apart == pytest.approx(each.max, rel=1e-9, abs=ROUNDING):
+        if apart != pytest.approx(each.max, rel=1e-9, abs=ROUNDING):
             yield f"the error at a worst point is {apart}, not {each.max}"
     points, exact = sample(name, fitted.axes)
     values = form_values(fitted, points)
@@ -88,7 +88,7 @@ def faults(fitted: FittedForm, entry: Entry) -> Iterator[str]:
         yield f"values from {values.min()} to {values.max()} are not in {bounds}"
     points, exact = judging_points(fitted.form)
     rms = np.sqrt(np.mean((form_values(fitted, points) - exact) ** 2))
-    if not rms == pytest.approx(stated.rms, rel=1e-9):
+    if rms != pytest.approx(stated.rms, rel=1e-9):
         yield f"the rms is {rms}, not {stated.rms}"
 
 

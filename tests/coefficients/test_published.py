@@ -1,7 +1,7 @@
 """The published tables: each constant, and each erratum by what undoing it does.
 
-Listings 2 to 5 are transcribed here in plain Python, and the forms that read the tables are compared
-with them.
+Listings 2 to 5 are transcribed here in plain Python, and the forms that read the tables are
+compared with them.
 """
 
 import functools
@@ -197,7 +197,7 @@ THETAS = np.linspace(0.1, pi / 2, 17)
 
 def test_corrected_rows_follow_the_best_of_every_material_and_printed_ones_do_not():
     grid = Grid(RATIONAL_PS.axes[:2], (ALPHAS, THETAS), np.full(289, 1 / 289), "uniform")
-    lights = light_directions(RATIONAL_PS.axes[2], 24, "uniform")
+    lights = light_directions(24, "uniform")
     solver = replace(RATIONAL_PS.solver, rule=lambda _: lights)
     best = np.asarray(solver.node_fits(RATIONAL_PS, grid, "uniform").optimum)
     apart = {

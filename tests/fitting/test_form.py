@@ -1,4 +1,4 @@
-"""Forms as values: one stage or two, coefficients in shape or flat, and the traced program."""
+"""Forms as values: one stage or two, coefficients in their shape or flat, traced programs."""
 
 import jax
 import jax.numpy as jnp
@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from fitting import Form, Stage, plain_form
-from fitting.form import traced
+from fitting.fit import fit
+from fitting.form import traced, unguarded
 from integrals import Axis
 from integrals.reference import restricted
 from programs import evaluate
 from tests.fitting.toys import AXES, PLANE, TOY, toy_form
-from tests.soft_step import SOFT
 
 # A material's two numbers first, then a direction's value.
 TWO_STAGES = Form(
@@ -96,25 +96,57 @@ def test_a_function_of_other_axes_can_be_traced_for_proofs():
     np.testing.assert_allclose(evaluate(program, np.array([[0.5, 4.0]])), [[2 - 11, 2]])
 
 
-def test_a_plain_function_is_a_form_whose_arguments_tell_axes_from_coefficients():
-    def bent(a, x, b, y):
-        """S = a x/(1 + b y)"""
-        return a * x / (1 + b * y)
-
-    form = plain_form(bent, SOFT)
-    assert form.coefficient_names == ["a", "b"]
-    assert form.name == "bent"
-    assert form.equation == "S = a x/(1 + b y)"
-    assert float(form(jnp.array([3.0, 0.5]), 2.0, 0.8)) == pytest.approx(6 / 1.4, rel=1e-15)
-    restricted_axes = restricted(SOFT.axes, x=(1.0, 2.0))
-    other = plain_form(bent, SOFT, [1.0, 0.2], "other-name", restricted_axes)
-    assert other.axes[0].lower == 1.0
-    assert other.name == "other-name"
-    np.testing.assert_array_equal(other.starts[0], [1.0, 0.2])
+# Forms of plain functions
 
 
-def test_a_plain_function_that_is_no_form_is_refused():
-    with pytest.raises(ValueError, match="flat does not take 'y'"):
-        plain_form(lambda x, a: a * x, SOFT, name="flat")
-    with pytest.raises(ValueError, match="flat: 2 starts given for 1 coefficients"):
-        plain_form(lambda x, y, a: a * x * y, SOFT, [1.0, 2.0], name="flat")
+def tilted(x, y, at_zero, slope):
+    """at_zero + slope·x + y
+
+    Further lines say more.
+    """
+    return at_zero + slope * x + y
+
+
+def test_arguments_named_like_axes_are_axes_and_the_rest_are_coefficients():
+    form = plain_form(tilted, TOY, start=[1.0, -2.0])
+    assert (form.name, form.equation) == ("tilted", "at_zero + slope·x + y")
+    assert (form.coefficient_names, form.axes) == (["at_zero", "slope"], AXES)
+    assert float(form.fitted(np.array([3.0, 0.5]))(0.5, 2.0)) == 3 + 0.25 + 2
+    (start,) = form.starts
+    np.testing.assert_array_equal(start, [1, -2])
+
+
+def test_the_order_of_the_arguments_does_not_matter():
+    form = plain_form(lambda c1, y, c0, x: c0 * x + c1 * y, TOY, name="turned")
+    assert (form.name, form.coefficient_names, form.starts) == ("turned", ["c1", "c0"], ())
+    assert float(form.fitted(np.array([10.0, 1.0]))(0.5, 2.0)) == 20.5
+
+
+def test_a_plain_form_can_be_fitted_and_restricted():
+    upper = restricted(AXES, y=(0.0, 2.0))
+    form = plain_form(tilted, TOY, axes=upper)
+    found = fit(form, nodes=9)
+    assert found.fitted.axes == upper
+    assert found.solver == "QR"
+    assert found.certificate.holds
+
+
+def test_a_function_without_a_docstring_is_described_by_its_name():
+    form = plain_form(lambda x, y, c0: c0 + x + y, TOY, name="bare")
+    assert form.equation == "bare"
+
+
+@pytest.mark.parametrize(
+    ("function", "start", "message"),
+    [
+        (lambda x, c0: c0 * x, [], "lonely does not take 'y': allowed is a function of all axes"),
+        (lambda x, y, c0: c0 * x, [1.0, 2.0], "lonely: 2 starts given for 1 coefficients"),
+    ],
+)
+def test_a_plain_function_that_is_no_form_is_refused(function, start, message):
+    with pytest.raises(ValueError, match=message):
+        plain_form(function, TOY, start=start, name="lonely")
+
+
+def test_an_unguarded_form_may_be_stepped_anywhere():
+    assert float(unguarded(np.ones(3), 0.5)) == 1

@@ -287,7 +287,9 @@ def test_what_must_stay_positive_has_derivatives():
 
 def test_a_fit_takes_the_forms_own_function_where_there_is_one():
     assert positive_of(RATIONAL_R) is RATIONAL_R.proofs.positive
-    assert positive_of(QUADRATIC_Q) is derived_positive(QUADRATIC_Q)
+    assert positive_of(QUOTIENT) is derived_positive(QUOTIENT)
+    # A fit of Eq. (3) steps where it will: only the certificate excludes poles.
+    assert float(positive_of(RATIONAL_G)(np.full(4, -1.0), 0.1, 1.0)) == 1
 
 
 # The program

@@ -24,9 +24,7 @@ THETA_U = RATIONAL_PS.axes[2]
 
 def solver(count: int):
     """Return the solver of P_s with count² lights a material."""
-    return replace(
-        RATIONAL_PS.solver, rule=lambda measure: light_directions(THETA_U, count, measure)
-    )
+    return replace(RATIONAL_PS.solver, rule=lambda measure: light_directions(count, measure))
 
 
 @functools.cache
@@ -38,7 +36,7 @@ def fits(measure: str = "uniform"):
 def problem(measure: str, row: int, column: int):
     """Return one node's matrix of Eq. (1)'s functions, exact P_s and weights, all by NumPy."""
     alpha, theta_f = GRID.nodes[0][row], GRID.nodes[1][column]
-    lights, weights = light_directions(THETA_U, COUNT, measure)
+    lights, weights = light_directions(COUNT, measure)
     theta, phi = lights.T
     un = np.cos(theta)
     ut = np.sin(theta) * np.cos(phi) * np.sin(theta_f) + un * np.cos(theta_f)
@@ -119,7 +117,7 @@ def together():
 def test_a_fit_states_the_errors_at_every_node_and_light():
     found, _ = together()
     fitted = RATIONAL_PS.fitted(found.coefficients)
-    lights, weights = light_directions(THETA_U, COUNT, "solid-angle")
+    lights, weights = light_directions(COUNT, "solid-angle")
     square, largest, place = 0.0, 0.0, None
     for material, share in zip(GRID.points, GRID.weights, strict=True):
         points = np.concatenate([np.broadcast_to(material, lights.shape), lights], axis=1)
@@ -168,6 +166,7 @@ def rms() -> float:
     return float(np.sqrt(MATERIALS.weights @ np.ravel(square)))
 
 
+@pytest.mark.slow
 def test_all_together_come_close_to_the_best_of_every_node_and_polynomials_do_not(monkeypatch):
     assert limit() < rms() < 1.002 * limit()
     monkeypatch.setattr(quotients, "solve_nonlinear", lambda residual, start, steps: start)

@@ -1,8 +1,10 @@
 """Random scalar expressions are traced, printed in Python and C, run, and compared with JAX."""
 
 import ctypes
+import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from jax.ad_checkpoint import checkpoint_name
 
 from programs.functions import Function, Parameter, group_inputs
 from programs.languages import LANGUAGES, PRECISIONS
@@ -219,3 +222,25 @@ def test_printed_lines_are_short_clean_and_reproducible(tree, language, constant
     assert all(line == line.rstrip() for line in source.splitlines())
     for opening, closing in ("()", "[]", "{}"):
         assert source.count(opening) == source.count(closing)
+
+
+@settings(max_examples=20, deadline=None)
+@given(TREES)
+def test_a_value_keeps_the_name_that_checkpoint_name_gives_it(tree):
+    """Where no assignment names a value, such as a clamp's, this does; values do not change."""
+
+    def twice(value):
+        return jnp.sin(value) * value
+
+    def call(x, y, z):
+        inputs = {"x": x, "y": y, "z[0]": z[0], "z[1]": z[1]}
+        return twice(checkpoint_name(compute(tree, inputs) * 1.5 + jnp.cos(x), "given_name"))
+
+    named = replace(function_of(tree), call=call)
+    program, rows = trace(named), points(16)
+    assert [step.hint for step in program.steps].count("given_name") == 1
+    # The value is used twice, so that printed code holds it in a variable.
+    assert re.search(r"\bgiven_name = ", write_source(named, "python", "double"))
+    np.testing.assert_allclose(
+        evaluate(program, rows), in_jax(named, rows), rtol=0, atol=4 * TOLERANCE["double"]
+    )

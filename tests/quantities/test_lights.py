@@ -20,7 +20,7 @@ AVERAGES = {
 
 @pytest.mark.parametrize("measure", MEASURES)
 def test_lights_average_over_the_hemisphere_in_their_measure(measure):
-    lights, weights = light_directions(RATIONAL_PS.axes[2], 16, measure)
+    lights, weights = light_directions(16, measure)
     assert lights.shape == (256, 2)
     theta, phi = lights.T
     assert ((theta > 0) & (theta < np.pi / 2) & (phi > 0) & (phi < np.pi)).all()
