@@ -11,6 +11,8 @@ from quantities import Problem
 
 # Domains that differ by less are equal: a file may state them in float32 or with seven digits.
 ROUNDING = 1e-6
+# A proven bound of values may be this far outside the codomain, because the proof rounds outwards.
+ROUNDING_OF_PROOF = 1e-11
 
 
 def fitted_form(table: Table, owner: Problem) -> FittedForm:
@@ -42,6 +44,11 @@ def _require_agreement(table: Table, form: Form) -> None:
             raise _contradiction(table, f"the unit of {name}", its_unit, unit)
         if not np.allclose(its_domain, domain, ROUNDING, ROUNDING):
             raise _contradiction(table, f"the domain of {name}", its_domain, domain)
+    certificates, (least, most) = table.certificates, form.reference.codomain
+    if certificates is not None and certificates.range is not None:
+        lower, upper = certificates.range
+        if not least - ROUNDING_OF_PROOF <= lower <= upper <= most + ROUNDING_OF_PROOF:
+            raise _contradiction(table, "the range", [lower, upper], [least, most])
     measures = list(form.reference.sampling.measures)
     if table.weight is not None and table.weight not in measures:
         raise _contradiction(table, "the weight", table.weight, measures)

@@ -54,9 +54,7 @@ def proof_text(certificates: Certificates | None) -> list[str]:
     found = ["no denominator" if bound is None else f"denominators ≥ {_below(bound, 3)}"]
     if values is not None:
         # A bound just outside of [0, 1] is so by the rounding of the proof.
-        low, high = (
-            round(end) if abs(end - round(end)) <= _ROUNDING else end for end in values
-        )
+        low, high = (round(end) if abs(end - round(end)) <= _ROUNDING else end for end in values)
         low, high = math.floor(low * _DIGITS) / _DIGITS, math.ceil(high * _DIGITS) / _DIGITS
         found.append(f"values in [{low:g}, {high:g}]")
     if (certificates.conservative_bound or 0) > 0:

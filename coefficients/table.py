@@ -107,8 +107,8 @@ class Certificates(_Part):
     """What is proven on the whole domain, by branch and bound over a number of boxes.
 
     Every denominator is at least `denominator_bound`; without a bound there is no denominator.
-    Every value is within `range`, which is within [0, 1] to 1e-12; without a range this is not
-    proven. No coefficients of the form have a largest error below `least_error`. If
+    Every value is within `range`, and that within the quantity's codomain but for the rounding of
+    the proof; without a range this is not proven. No coefficients of the form have a largest error below `least_error`. If
     `conservative_bound` is positive, no value is above the exact one: it is a lower bound of a
     quantity that would be negative there (quantities/fuzz/velvet_form.py).
     """

@@ -57,7 +57,9 @@ def _with_problem_files(command: Callable) -> Callable:
     signature = inspect.signature(command)
     option = inspect.Parameter("problem", inspect.Parameter.KEYWORD_ONLY, default=None)
     option = option.replace(annotation=_ProblemFiles)
-    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), option])
+    parameters = [*signature.parameters.values(), option]
+    # Typer reads a command's options from these two.
+    vars(run)["__signature__"] = signature.replace(parameters=parameters)
     run.__annotations__ = {**command.__annotations__, "problem": _ProblemFiles}
     return run
 

@@ -23,8 +23,9 @@ def certify_range(fitted: FittedForm, tightness: float = TIGHTNESS) -> Bounds | 
     """Return proven bounds of a form's values within the codomain; None if there is no such proof.
 
     If the form has margins (`Proofs.margins`), they are proven not to be negative, and the bounds
-    are the ends of the codomain. Otherwise the values are bounded by branch and bound, to within `tightness` of the
-    values that the form attains. Call `certify_denominators` before: this proof relies on it.
+    are the ends of the codomain. Otherwise the values are bounded by branch and bound, to within
+    `tightness` of the values that the form attains. Call `certify_denominators` before: this proof
+    relies on it.
     """
     form, constants = fitted.form, fitted.constants
     if form.proofs.margins is not None:
