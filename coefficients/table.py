@@ -108,9 +108,9 @@ class Certificates(_Part):
 
     Every denominator is at least `denominator_bound`; without a bound there is no denominator.
     Every value is within `range`, and that within the quantity's codomain but for the rounding of
-    the proof; without a range this is not proven. No coefficients of the form have a largest error below `least_error`. If
-    `conservative_bound` is positive, no value is above the exact one: it is a lower bound of a
-    quantity that would be negative there (quantities/fuzz/velvet_form.py).
+    the proof; without a range this is not proven. No coefficients of the form have a largest error
+    below `least_error`. If `conservative_bound` is positive, no value is above the exact one: it is
+    a lower bound of a quantity that would be negative there (quantities/fuzz/velvet_form.py).
     """
 
     denominator_bound: Positive | None = None
