@@ -1,10 +1,11 @@
-"""The refit of all four tables as one would write it today in NumPy and SciPy.
+"""The refit of all four tables, as it would be written in plain NumPy and SciPy.
 
-Without a closed form every reference is a numeric integral of its definition: of P_s by a product
-rule of 64×128 views; of G and Q by `quad`. Each surface is fitted by `curve_fit`. The integrals of
-P_s and R are timed on some cells and the time for all is extrapolated; the surfaces that the fits
-need come from a file. The joint fit of P_s, off-grid errors and certificates are left out, which
-favours this side. Prints one JSON object.
+There are no closed forms, so all exact values are numeric integrals of the definitions: P_s by a
+product rule of 64×128 views, G and Q by `quad`. Each fit is made by `curve_fit`. The integrals of
+P_s and R would take too long. They are timed for a few cells, that is, materials of the grid, and
+the time for all cells is extrapolated. The data that the fits need come from a file. The joint fit
+of P_s, the errors off the grid and the proofs are left out, which makes this script faster than the
+real task. It prints one JSON object.
 """
 
 import argparse
@@ -21,7 +22,7 @@ LIGHTS_PER_ANGLE_R = 32
 VIEW_NODES = 64  # Gauss–Legendre in θv; twice as many midpoints in φv
 DENSITY = (0.001, 0.5)
 COS_V = (0.001, 1.0)
-# curve_fit gives up after this many evaluations
+# `curve_fit` gives up after this many evaluations.
 EVALUATIONS = 20_000
 
 
@@ -31,7 +32,7 @@ def directions(theta, phi):
 
 
 def views():
-    """Give the nodes (n, 3) and weights (n,) of a product rule over the hemisphere of views."""
+    """Return the nodes (n, 3) and weights (n,) of a product rule over the hemisphere of views."""
     x, w = np.polynomial.legendre.leggauss(VIEW_NODES)
     theta = np.pi / 4 * (x + 1)
     phi = (np.arange(2 * VIEW_NODES) + 0.5) * np.pi / VIEW_NODES
@@ -40,7 +41,7 @@ def views():
 
 
 def scattered_fraction(alpha, theta_f, lights, view, weights):
-    """Integrate the definition of P_s for lights (n, 3) of one material."""
+    """Return P_s of one material for lights (n, 3), by integration over the views."""
     fibre = np.array([np.sin(theta_f), 0.0, np.cos(theta_f)])
     kappa = 1 - alpha**2
     along_u, along_v = lights @ fibre, view @ fibre
@@ -56,7 +57,7 @@ def scattered_fraction(alpha, theta_f, lights, view, weights):
 
 
 def lights_of(count):
-    """Give θu and φ (count²,) on [0, π/2] × [0, π] and weights that are uniform in both."""
+    """Return θu and φ (count²,) in [0, π/2] × [0, π], and weights that are uniform in both."""
     x, w = np.polynomial.legendre.leggauss(count)
     theta = np.repeat(np.pi / 4 * (x + 1), count)
     phi = np.tile((np.arange(count) + 0.5) * np.pi / count, count)
@@ -64,7 +65,7 @@ def lights_of(count):
 
 
 def fit_cell(alpha, theta_f, view, weights):
-    """Find c₀ … c₅ of one material, and P_s on the way."""
+    """Return the best c₀ … c₅ of one material (6,), and the exact P_s for the lights."""
     theta, phi, light_weights = lights_of(LIGHTS_PER_ANGLE)
     lights = directions(theta, phi)
     exact = scattered_fraction(alpha, theta_f, lights, view, weights)
@@ -78,7 +79,7 @@ def fit_cell(alpha, theta_f, view, weights):
 def average_fraction(alpha, theta_f, view, weights):
     theta, phi, light_weights = lights_of(LIGHTS_PER_ANGLE_R)
     exact = scattered_fraction(alpha, theta_f, directions(theta, phi), view, weights)
-    # dω (u·n)/π over φ ∈ [0, 2π], by symmetry twice [0, π]
+    # The integral of P_s (u·n)/π over all φ is twice that over [0, π], by symmetry.
     return float(np.pi * light_weights @ (exact * np.sin(theta) * np.cos(theta)))
 
 
@@ -96,13 +97,13 @@ def surface(points, *c):
 
 
 def fit_surface(points, target, denominator_terms):
-    """Fit Eq. (2) or (5) from the best polynomial; gives the coefficients and the rms error."""
+    """Fit Eq. (2) or (5), starting from the best polynomial. Returns coefficients and rms error."""
     beta, x = terms(points)
     start = np.linalg.lstsq((beta * np.vstack([np.ones_like(beta), x])).T, target, rcond=None)[0]
     start = np.concatenate([start, np.zeros(denominator_terms)])
     try:
         found, _ = curve_fit(surface, points, target, start, maxfev=EVALUATIONS)
-    except RuntimeError:  # it did not converge: what a user gets is the polynomial
+    except RuntimeError:  # It did not converge; a user is left with the polynomial.
         found = start
     return found, float(np.sqrt(np.mean((surface(points, *found) - target) ** 2)))
 

@@ -1,8 +1,8 @@
-"""Speed, as ratios measured in one run: `python benchmarks/run.py [--json]`.
+"""Measure speed as ratios within one run: `python benchmarks/run.py [--json]`.
 
-(a) `shadefit refit all` at 65×65 from a cold start, imports and compilation included, against the
-same job in plain NumPy and SciPy (plain_scipy.py). (b) Evaluations a second of P_s by its closed
-form against quadrature of the definition.
+(a) The time of `shadefit refit all` at 65×65 from a cold start, imports and compilation included,
+compared with that of the same task in plain NumPy and SciPy (plain_scipy.py). (b) The evaluations
+per second of P_s by its closed form, compared with quadrature of its definition.
 """
 
 import argparse
@@ -32,7 +32,7 @@ THREADS = {"OPENBLAS_NUM_THREADS": "1"}
 
 
 def timed(command: list[str]) -> tuple[float, float, float, str]:
-    """Run a command; give wall and processor seconds, peak memory in MiB and its output."""
+    """Run a command. Returns wall and processor time in s, peak memory in MiB, and the output."""
     with tempfile.TemporaryFile("w+") as output:
         clock = time.perf_counter()
         child = subprocess.Popen(command, stdout=output, env={**os.environ, **THREADS})
@@ -56,7 +56,7 @@ def refit_all(folder: Path) -> dict:
 
 
 def surfaces(path: Path) -> None:
-    """Write the surfaces that the fits of the plain side start from: not part of what is timed."""
+    """Write the file of data that plain_scipy.py fits and compares with. This is not timed."""
     grid = trapezoid_grid(RATIONAL_PS.axes[:2], 65)
     fits = RATIONAL_PS.solver.node_fits(RATIONAL_PS, grid, "uniform")
     cells = np.array(fits.optimum).reshape(-1, 6)
@@ -82,7 +82,7 @@ def plain(path: Path) -> dict:
     command = [sys.executable, str(HERE / "plain_scipy.py"), str(path), "--cells", str(CELLS)]
     wall, _, memory, text = timed(command)
     found = json.loads(text)
-    # What was not measured is the work on the cells that were left out.
+    # The difference is the extrapolated time of the cells that were not computed.
     rest = sum(found["seconds"].values()) - found["measured"]
     return {
         "seconds": wall + rest,
@@ -94,7 +94,7 @@ def plain(path: Path) -> dict:
 
 
 def rate(function, *arguments, count: int, repeat: int = 5) -> float:
-    """Give evaluations a second: the best of several runs, compiled before."""
+    """Return evaluations per second: the best of several runs after compilation."""
     jax.block_until_ready(function(*arguments))
     best = np.inf
     for _ in range(repeat):

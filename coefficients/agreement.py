@@ -1,4 +1,4 @@
-"""The form that a table holds the coefficients of, if what the table says of it is true."""
+"""From a table to its form: what the table states about the form has to be true."""
 
 import reprlib
 from typing import Any
@@ -9,15 +9,17 @@ from coefficients.table import Table
 from fitting import FittedForm, Form
 from quantities import Problem
 
-# A domain that has been through float32, or was written with seven digits, is the same.
+# Domains that differ by less are equal: a file may state them in float32 or with seven digits.
 ROUNDING = 1e-6
+# A proven bound of values may be this far outside the codomain, because the proof rounds outwards.
+ROUNDING_OF_PROOF = 1e-11
 
 
 def fitted_form(table: Table, owner: Problem) -> FittedForm:
-    """Return the form of a table with its coefficients.
+    """Return the form of a table with the table's coefficients.
 
-    Raises ValueError for a form that the quantity does not have, coefficients that are not in its
-    shape, and arguments and names of coefficients that are not the form's.
+    `owner` is the table's quantity. Raises ValueError if it has no such form, or if the shape of
+    the coefficients, their names, or the arguments differ from those of the form.
     """
     form = owner.form(table.form, table.shape)
     coefficients = np.array(table.coefficients)
@@ -31,7 +33,7 @@ def fitted_form(table: Table, owner: Problem) -> FittedForm:
 
 
 def _require_agreement(table: Table, form: Form) -> None:
-    """Raise ValueError where a table says of its form what the form does not."""
+    """Raise ValueError if a table states its form's arguments, weight or names differently."""
     given = {each.name: (each.unit, each.domain) for each in table.arguments}
     wanted = {axis.name: (axis.unit, [axis.lower, axis.upper]) for axis in form.axes}
     if [each.name for each in table.arguments] != list(wanted):
@@ -42,6 +44,11 @@ def _require_agreement(table: Table, form: Form) -> None:
             raise _contradiction(table, f"the unit of {name}", its_unit, unit)
         if not np.allclose(its_domain, domain, ROUNDING, ROUNDING):
             raise _contradiction(table, f"the domain of {name}", its_domain, domain)
+    certificates, (least, most) = table.certificates, form.reference.codomain
+    if certificates is not None and certificates.range is not None:
+        lower, upper = certificates.range
+        if not least - ROUNDING_OF_PROOF <= lower <= upper <= most + ROUNDING_OF_PROOF:
+            raise _contradiction(table, "the range", [lower, upper], [least, most])
     measures = list(form.reference.sampling.measures)
     if table.weight is not None and table.weight not in measures:
         raise _contradiction(table, "the weight", table.weight, measures)
@@ -53,7 +60,7 @@ def _require_agreement(table: Table, form: Form) -> None:
 
 
 def _contradiction(table: Table, what: str, given: Any, wanted: Any) -> ValueError:
-    # What a file holds may be long: it is shown in part.
+    # The value may come from a file and be long: only a part is shown.
     return ValueError(
         f"{table.name} gives {what} as {reprlib.repr(given)}, "
         f"form {table.form!r} has {reprlib.repr(wanted)}"

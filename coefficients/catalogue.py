@@ -1,6 +1,7 @@
-"""What a name stands for: a table that is kept here, a table's file, or a closed form.
+"""Names of tables and closed forms: what a user's name stands for.
 
-Whatever the user names is resolved once, into an `Entry`, which is passed on.
+A name stands for a packaged table (below `coefficients/tables`), for a table in the user's file, or
+for a closed form. The command line resolves it once, into an `Entry`, and passes the entry on.
 """
 
 import os
@@ -22,7 +23,7 @@ from quantities.calling_convention import renamed
 from quantities.problem import ExactCode
 
 FOLDER = Path(__file__).parent / "tables"
-# A published table with this behind its name is taken as printed, its errata left in.
+# Behind the name of a published table: the table as it is printed, without corrections.
 AS_PRINTED = "@printed"
 EXACT = "exact"
 
@@ -32,9 +33,10 @@ _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best"
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """What a name stands for: its quantity, and the table with its fitted form.
+    """What a name stands for: a quantity, and a table with its fitted form.
 
-    `name` is what the user named. A closed form (kind 'exact') has neither table nor form.
+    `name` is the name that the user gave. A closed form (kind 'exact') has neither a table nor a
+    fitted form.
     """
 
     name: str
@@ -45,25 +47,25 @@ class Entry:
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """The axes, restricted to the domain that the entry is made for."""
+        """The axes, restricted to the domain of the table or the closed form."""
         if self.fitted is not None:
             return self.fitted.axes
         return self.exact_code.axes
 
     @property
     def equation(self) -> str:
-        """What the value is computed by."""
+        """The equation that the value is computed by, as text."""
         return self.require_table().equation if self.table else self.exact_code.equation
 
     @property
     def remark(self) -> str | None:
-        """What the caller of the exported functions must know of their arguments."""
+        """What a caller of the exported functions must know about their arguments, if anything."""
         if self.fitted is not None:
             return self.problem.calling.remark
         return self.exact_code.remark
 
     def require_table(self) -> Table:
-        """Return the table; raises ValueError for a closed form, which has none."""
+        """Return the table. Raises ValueError for a closed form, which has none."""
         if self.table is None:
             raise ValueError(
                 f"{self.name} has no coefficients: allowed is {self.name} with --to LANG"
@@ -71,16 +73,17 @@ class Entry:
         return self.table
 
     def require_fitted(self) -> FittedForm:
-        """Return the fitted form; raises ValueError for a closed form, which has none."""
+        """Return the fitted form. Raises ValueError for a closed form, which has none."""
         self.require_table()
         assert self.fitted is not None
         return self.fitted
 
     def functions(self, precision: str = "float", name: str | None = None) -> tuple[Function, ...]:
-        """Return the exported functions in the order of their calls; the last gives the value.
+        """Return the exported functions in the order of the calls; the last returns the value.
 
-        `precision` decides how many steps a closed form takes; `name` replaces the name of the last
-        function. Raises ValueError for a name that is no identifier.
+        `precision` ("half", "float" or "double") decides how many steps a closed form takes. `name`
+        replaces the name of the last function. Raises ValueError for a name that is not an
+        identifier.
         """
         if self.fitted is None:
             functions = self.exact_code.functions(precision)
@@ -89,28 +92,33 @@ class Entry:
         return functions if name is None else renamed(functions, name)
 
     def arguments_at(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return what each function is called with at points (n, axes), without earlier results."""
+        """Return the arguments of each function at points (n, axes), as arrays (n, …).
+
+        The results of the first function, which the second takes before its own arguments, are left
+        out.
+        """
         if self.fitted is None:
             return self.exact_code.arguments_at(points)
         return self.problem.calling.arguments_at(self.fitted, points)
 
     @property
     def exact_code(self) -> ExactCode:
-        """The closed form of the quantity as shader code; only for a quantity that has one."""
+        """The closed form of the quantity as shader code. The quantity must have one."""
         assert self.problem.exact_code is not None
         return self.problem.exact_code
 
 
 def resolve(name: str) -> Entry:
-    """Return what a name stands for: a table's name, 'exact/NAME', or the path of a table's file.
+    """Return what a name stands for.
 
-    Names are 'ps' (refitted), 'published/ps', 'published/ps@printed', 'best/q-9', 'exact/ps'. A
-    published table is corrected by its errata unless '@printed' follows its name. Raises ValueError
-    for a name that is none of these, and for a file that is no valid table.
+    It is a table's name, such as 'ps' (refitted), 'published/ps', 'published/ps@printed' or
+    'best/q-9'; the name of a closed form, such as 'exact/ps'; or the path of a table's file. The
+    errata of a published table are applied unless '@printed' follows its name. Raises ValueError
+    for any other name, and for a file that is not a valid table.
     """
     if name in names() or name.removesuffix(AS_PRINTED) in _files():
         return _kept(name)
-    # os.path, unlike Path, takes a name that is too long for one that does not exist.
+    # For a name that is too long, os.path.isfile returns false; Path.is_file raises an error.
     is_file = name.endswith(".json") or os.path.isfile(name)
     if name.startswith(f"{EXACT}/") and not is_file:
         return _closed_form(name)
@@ -124,18 +132,19 @@ def resolve(name: str) -> Entry:
 
 
 def load(name: str) -> FittedForm:
-    """Return the fitted form of a table, by its name or its file's path.
+    """Return the fitted form of a table with a name or a file's path.
 
-    It is called with the values of its axes. Raises ValueError as `resolve` does.
+    Call the form with the values of its axes. Raises ValueError as `resolve` does, and for a closed
+    form.
     """
     return resolve(name).require_fitted()
 
 
 def entries(owner: Problem | None = None) -> list[Entry]:
-    """Return the tables that are kept here, of one quantity or of all.
+    """Return the packaged tables of one quantity, or of all.
 
-    Of all: refitted tables, best ones, published ones, and those as printed, each by name. Of one
-    quantity: as printed, published, refitted, and best.
+    Those of one quantity are in this order: as printed, published, refitted, best. Those of all are
+    in the order of `names`.
     """
     found = [_kept(name) for name in names()]
     if owner is None:
@@ -146,13 +155,13 @@ def entries(owner: Problem | None = None) -> list[Entry]:
 
 
 def published(owner: Problem) -> Entry | None:
-    """Return the published table of a quantity, corrected; None if there is none."""
+    """Return the published table of a quantity, with its errata applied; None if there is none."""
     name = f"published/{owner.name}"
     return _kept(name) if name in _files() else None
 
 
 def printed(owner: Problem) -> Entry | None:
-    """Return the published table as printed; None if its errata change no coefficient."""
+    """Return the published table as printed; None if its errata change no coefficients."""
     name = f"published/{owner.name}{AS_PRINTED}"
     return _kept(name) if name in names() else None
 
@@ -163,13 +172,13 @@ def refitted(owner: Problem) -> Entry | None:
 
 
 def with_published() -> list[Problem]:
-    """List the quantities that have a published table, which the others are held against."""
+    """List the quantities that have a published table, with which others can be compared."""
     return [owner for owner in problems().values() if published(owner) is not None]
 
 
 @lru_cache(maxsize=1)
 def names() -> tuple[str, ...]:
-    """List the names of the tables that are kept here: refitted, best, published, as printed."""
+    """List the names of the packaged tables: refitted, best, published, and as printed."""
     known = list(_files())
     printed = [
         f"{name}{AS_PRINTED}"
@@ -180,21 +189,27 @@ def names() -> tuple[str, ...]:
 
 
 def names_of_best() -> list[str]:
-    """List the tables of forms that are not the published ones: 'best/q-9', …."""
+    """List the names of the best tables, such as 'best/q-9'. Their forms are not the published."""
     return [name for name in _files() if name.startswith("best/")]
 
 
+def is_kept(name: str) -> bool:
+    """Tell whether a name is that of a table or a quantity whose tables are kept here."""
+    return name in _files() or (name in problems() and bool(problem(name).topic))
+
+
 def path_of(name: str) -> Path:
-    """Return the file that a table's name is kept in, or would be."""
+    """Return the file of a packaged table, or the file where a quantity's refit would be."""
     if name in _files():
         return _files()[name]
     return FOLDER / problem(name).topic / "refit" / f"{name}.json"
 
 
 def corrected(table: Table) -> Table:
-    """Apply the errata that a published table records; others are returned as they are.
+    """Return a published table with its errata applied; other tables are returned unchanged.
 
-    Applied errata are marked, so that they are not applied again when the table is read.
+    An erratum that is applied loses its `exchange_rows`, so that it is not applied a second time if
+    the result is written and read again.
     """
     if table.publication is None:
         return table
@@ -216,7 +231,7 @@ def corrected(table: Table) -> Table:
 
 @lru_cache(maxsize=1)
 def _files() -> dict[str, Path]:
-    """Map the names of the tables that are kept here to their files: refitted, best, published."""
+    """Map the names of the packaged tables to their files: refitted, best, then published."""
     found: dict[str, Path] = {}
     for folder, prefix in (("refit", ""), ("best", "best/"), ("published", "published/")):
         paths = sorted(FOLDER.glob(f"*/{folder}/*.json"), key=lambda path: path.name)
@@ -231,7 +246,7 @@ def _read(name: str) -> Table:
 
 @lru_cache(maxsize=256)
 def _kept(name: str) -> Entry:
-    """Return a table that is kept here; raises ValueError for '@printed' behind another's name."""
+    """Return a packaged table. Raises ValueError for '@printed' if it is not a published one."""
     stem = name.removesuffix(AS_PRINTED)
     kind = _KINDS[_files()[stem].parent.name]
     if stem != name and kind != "published":
@@ -253,7 +268,7 @@ def _closed_form(name: str) -> Entry:
 
 
 def _allowed() -> Sequence[str]:
-    """List names for a message: quantities, published tables and best ones."""
+    """List the names that an error message offers: refitted, published and best tables."""
     owners = problems().values()
     public = [f"published/{owner.name}" for owner in with_published()]
     return [*(owner.name for owner in owners), *public, *names_of_best()]

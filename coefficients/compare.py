@@ -1,4 +1,4 @@
-"""Tables side by side, each against the exact values on the same points."""
+"""Comparisons of tables: the errors of each at the same points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from fitting.points.scattered import judging_points
 
 @dataclass(frozen=True)
 class Contestant:
-    """One table of a comparison: its errors, and these over those of the first table."""
+    """One table of a comparison: its errors, and their ratios to the errors of the first table."""
 
     label: str
     table: Table
@@ -25,9 +25,10 @@ class Contestant:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Tables of one quantity on the same off-grid points of their common domain.
+    """Tables of one quantity, compared at the same points of their common domain.
 
-    `difference` is the largest difference between the first table and the last, at `where`.
+    `difference` is the largest difference between the values of the first and of the last table,
+    and `where` is the point that has it.
     """
 
     quantity: str
@@ -38,10 +39,10 @@ class Comparison:
 
 
 def compare(labelled: Sequence[tuple[str, Entry]]) -> Comparison:
-    """Compare tables of one quantity; the others' errors are given over those of the first.
+    """Compare tables of one quantity, given as pairs of a label and an entry.
 
-    The points are the judging points of the domain that all have in common. Raises ValueError when
-    the quantities differ, or no part of their domains is common.
+    Errors are measured by `fitting.judge` in the common part of all domains. Raises ValueError if
+    the quantities differ, or if the domains have no common part.
     """
     quantities = {entry.problem.name for _, entry in labelled}
     if len(quantities) != 1:
@@ -91,7 +92,7 @@ def as_json(comparison: Comparison) -> dict:
 
 
 def coefficient_rows(comparison: Comparison) -> list[tuple[str, list[float]]]:
-    """Return the name of every coefficient and its value in each table, for tables of one form."""
+    """Return each coefficient's name and its values in all tables, which must be of one form."""
     first = comparison.contestants[0].table
     names = np.ravel(np.array(first.coefficient_names, dtype=object))
     columns = [np.ravel(each.table.coefficients) for each in comparison.contestants]

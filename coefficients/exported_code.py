@@ -1,4 +1,4 @@
-"""The exported functions of an entry: evaluated, verified, counted, and written with a header."""
+"""The exported functions of an entry: their values, verification, costs, and source files."""
 
 import functools
 import shlex
@@ -31,17 +31,22 @@ from programs import (
 )
 from programs.toolchains.verification import corners, run_code, text_of
 
-# Code is run on 2^EXPONENT points and the corners of the domain.
+# Code is run at 2^EXPONENT points and at the corners of the domain.
 EXPONENT = 17
 SEED = 20200718
-# Half precision is good enough where it adds no more to a fit's error than the error itself. The
-# closed form, which has none, may lose two of the eleven bits that half has.
+# Half precision is called good enough if errors are at most this many times those of the fit in
+# float64.
 WORTH = 2.0
+# The closed form has no such errors. In half precision its error may be this large: it may lose two
+# of the eleven bits.
 HALF_ALLOWANCE = 4 * float(np.finfo(np.float16).eps)
 
 
 def trial_of(entry: Entry, precision: str, exponent: int = EXPONENT) -> Trial:
-    """Return what verifies the exported code of an entry in a precision, on 2^exponent points."""
+    """Return the trial that verifies an entry's exported code in a precision.
+
+    It has 2^exponent points and the corners of the domain.
+    """
     points = [corners(entry.axes), sobol_points(entry.axes, exponent, SEED)]
     reference = entry.problem.reference
     return Trial(
@@ -54,9 +59,9 @@ def trial_of(entry: Entry, precision: str, exponent: int = EXPONENT) -> Trial:
 
 
 def exported_values(entry: Entry, points: np.ndarray) -> np.ndarray:
-    """Evaluate an entry's exported functions, clamps and all, in float64 at points (…, axes): (…).
+    """Return the values (…) of an entry's exported code at points (…, axes), in float64.
 
-    The functions are called one after the other, as a renderer calls them.
+    The functions are called one after the other, with their clamps, as a renderer calls them.
     """
     flat = points.reshape(-1, points.shape[-1])
     results = np.empty((len(flat), 0))
@@ -67,12 +72,16 @@ def exported_values(entry: Entry, points: np.ndarray) -> np.ndarray:
 
 @functools.lru_cache(maxsize=256)
 def programs_of(entry: Entry, precision: str = "double") -> tuple[Program, ...]:
-    """Return the programs of an entry's exported functions, in the order of their calls."""
+    """Return the traced programs of an entry's exported functions, in the order of the calls."""
     return tuple(trace(each) for each in entry.functions(precision))
 
 
 def operations_of(entry: Entry) -> int:
-    """Count the operations of the function that gives the value: of P_s, those of a direction."""
+    """Count the operations of the function that returns the value.
+
+    For a form of two stages this is the second function. The cost of the first is not counted,
+    because many points share it.
+    """
     return count_operations(trace(entry.functions()[-1])).operations
 
 
@@ -95,15 +104,16 @@ def source_file(
     function_name: str | None = None,
     constants: str = "inline",
 ) -> str:
-    """Return the source file of an entry, headed by its domain, errors, proofs and cost.
+    """Return the source file of an entry; its header states domain, errors, proofs and cost.
 
     Arguments: `key`, a key of LANGUAGES; `precision`, None for float (JavaScript: double);
-    `function_name`, None for the quantity's own; `constants`, "inline" or "table". The same call
-    returns the same bytes on a machine. Raises ValueError for what cannot be written.
+    `function_name`, None for the quantity's own; `constants`, "inline" or "table". On one machine,
+    the same call returns the same bytes. Raises ValueError for what cannot be written.
     """
     kind = precision_of(key, precision)
     functions = entry.functions(kind, function_name)
-    # Before anything is measured: what cannot be written is refused at once.
+    # The source is first written without its header: if that is not possible, no time is spent on
+    # measurements.
     bare = write_source(functions, key, kind, constants=constants)
     command = ["shadefit", "export", entry.name, "--to", key]
     if precision is not None:
@@ -131,7 +141,7 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
         head["Arguments"] = entry.remark
     own = None
     if entry.fitted is None:
-        # The same points and steps, without the roundings of the precision.
+        # This is the same program with the same number of steps, but evaluated in float64.
         left = trial.against_integral(replace(trial, precision="double").form)
         head["Error in exact arithmetic"] = f"{entry.exact_code.left}: {text_of(left)} (in float64)"
     else:
@@ -162,14 +172,17 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
 
 
 def closed_form_beside(entry: Entry) -> Entry | None:
-    """Return the closed form whose cost is told beside a table's; None where there is none."""
+    """Return the closed form whose cost is stated beside that of a table; None if there is none.
+
+    There is one only for a form of two stages whose quantity has an exported closed form.
+    """
     if entry.fitted is None or entry.fitted.form.inputs is None:
         return None
     return resolve(f"{EXACT}/{entry.problem.name}") if entry.problem.exact_code else None
 
 
 def _domain(functions: Sequence[Function]) -> str:
-    """Return the domains of the functions' scalar arguments, by the arguments' names."""
+    """Write the domains of the functions' scalar arguments as text."""
     parameters = {p.name: p for each in functions for p in each.parameters if p.size is None}
     return ", ".join(
         f"{p.name} in [{p.domain[0]:.6g}, {p.domain[1]:.6g}]{'' if p.unit == '1' else ' ' + p.unit}"
@@ -195,7 +208,7 @@ def _verdict(trial: Trial, own: Difference | None, measured: Difference) -> str:
         good = measured.largest <= HALF_ALLOWANCE and not measured.not_finite
         bound = f"largest error {HALF_ALLOWANCE:.1e}"
     else:
-        # The fit's own error on the same points, so that only the precision differs.
+        # The fit's error is measured at the same points, so that only the precision differs.
         own = trial.against_integral(trial.form)
         good = measured.within(replace(own, largest=WORTH * own.largest, rms=WORTH * own.rms))
         bound = f"{WORTH:g} times the fit's own {text_of(own)} on the same points"

@@ -1,4 +1,4 @@
-"""What an evaluation costs against how wrong it is: for every table, and for the closed form."""
+"""The cost and the error of every table of a quantity, and of its closed form."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,7 +17,11 @@ from quantities import Problem
 
 @dataclass(frozen=True)
 class Mark:
-    """One way to evaluate a quantity: what it is, operations, largest and rms error."""
+    """One way to evaluate a quantity: its operations, its largest error and its rms error.
+
+    `name` and `kind` are those of the table's entry; for the closed form they are 'closed form' and
+    'exact'.
+    """
 
     name: str
     kind: str
@@ -28,12 +32,12 @@ class Mark:
 
 @lru_cache(maxsize=8)
 def marks(owner: Problem) -> tuple[Mark, ...]:
-    """Return a mark for every table of a quantity, and for its closed form if there is one.
+    """Return a mark for every table of a quantity, and one for its closed form if there is one.
 
-    A table's errors are those of its float64 form, on the judging points of the published one, or
-    where nothing is published those that the table states; the closed form has only those of
-    float32, in which it is evaluated on the same points. Operations are those of the last exported
-    function: for P_s what a direction costs once the material is known.
+    If the quantity has a published table, the errors are those of float64 in the common part of all
+    domains; otherwise they are those that each table states. For the closed form see `closed_form`.
+    Operations are those of the last exported function (`operations_of`); for P_s they are the cost
+    of a direction once the material is known.
     """
     reference = published(owner)
     if reference is None:
@@ -49,7 +53,11 @@ def marks(owner: Problem) -> tuple[Mark, ...]:
 
 
 def closed_form(owner: Problem) -> list[Mark]:
-    """Return the mark of the closed form, evaluated in float32, if there is such a form."""
+    """Return a list with the mark of the closed form; it is empty if there is none.
+
+    In float64 the closed form has no error but rounding. It is therefore evaluated in float32, at
+    the points that judge the published table. The list is also empty without a published table.
+    """
     reference = published(owner)
     if owner.exact_code is None or reference is None:
         return []
@@ -64,9 +72,11 @@ def closed_form(owner: Problem) -> list[Mark]:
 
 
 def best_so_far(every: Iterable[Any]) -> list[Any]:
-    """Return those that no other one beats in both operations and largest error, by cost.
+    """Return the elements on the frontier of operations against error, in order of operations.
 
-    Each has a `name`, `operations` and the `largest` error.
+    An element has a `name`, `operations` and the `largest` error. It is left out if another has at
+    most as many operations and at most as large an error; of two equal ones, the first by name
+    stays.
     """
     best: list[Any] = []
     for mark in sorted(every, key=lambda mark: (mark.operations, mark.largest, mark.name)):

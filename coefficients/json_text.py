@@ -1,19 +1,21 @@
-"""JSON as text: read strictly, for a file may be hostile, and laid out for people to read."""
+"""JSON as text: strict reading, because a file may be hostile, and a layout for people to read."""
 
 import json
 import math
 from typing import Any
 
-# Integers of more digits are refused before they are converted.
+# Integers with more digits are refused before they are converted, because the conversion is slow.
 MAX_DIGITS = 100
+# Lines are at most this many characters long.
 WIDTH = 100
 
 
 def read_object(text: str) -> dict[str, Any]:
     """Read a JSON object.
 
-    Raises ValueError for what is none, for a key that is there twice, NaN and infinities, and for
-    an integer without end; RecursionError for what is nested too deeply.
+    Raises ValueError for text that is not a JSON object, for a key that occurs twice, for NaN and
+    infinities, and for an integer with too many digits. Raises RecursionError for text that is
+    nested too deeply.
     """
     data = json.loads(
         text,
@@ -27,7 +29,7 @@ def read_object(text: str) -> dict[str, Any]:
 
 
 def laid_out(value: Any, indent: str = "") -> str:
-    """Lay JSON out with containers of scalars on one line, or wrapped at WIDTH."""
+    """Return JSON text. A list of scalars is on one line, or wrapped if it exceeds WIDTH."""
     inner = indent + "  "
     if isinstance(value, dict) and value:
         items = [

@@ -1,4 +1,4 @@
-"""What is proven of a table on its whole domain, in words."""
+"""Proofs about a table as text: what is proven on its whole domain."""
 
 import math
 
@@ -9,11 +9,17 @@ from fitting.fit import ENOUGH
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
 
+# The ends of a range are written with four decimals.
 _DIGITS = 1e4
+_ROUNDING = 1e-11
 
 
 def proofs(entry: Entry) -> list[str]:
-    """Say what is proven of a table. A file may state what it likes: its form is proven anew."""
+    """Return texts that say what is proven about a table.
+
+    The certificates of packaged tables are trusted. Those in a user's file are not: the proofs are
+    made again.
+    """
     table = entry.require_table()
     if entry.kind != "file":
         return proof_text(table.certificates)
@@ -22,9 +28,9 @@ def proofs(entry: Entry) -> list[str]:
 
 
 def certified(fitted: FittedForm, stated: Certificates | None) -> Certificates | None:
-    """Certify a form anew, as far as `stated`: what a file says of its table is no proof.
+    """Prove again what can be proven about a form; None if denominators are not proven positive.
 
-    None where denominators are not shown to be positive.
+    The bound of the denominators is improved until it reaches the one that is `stated`.
     """
     enough = stated.denominator_bound if stated is not None else None
     found = certify_denominators(fitted, enough or ENOUGH)
@@ -41,15 +47,15 @@ def certified(fitted: FittedForm, stated: Certificates | None) -> Certificates |
 
 
 def proof_text(certificates: Certificates | None) -> list[str]:
-    """Say what certificates prove, a phrase each, numbers rounded to the safe side."""
+    """Return a text for each thing that certificates prove, with numbers on the safe side."""
     if certificates is None:
         return []
     bound, values = certificates.denominator_bound, certificates.range
     found = ["no denominator" if bound is None else f"denominators ≥ {_below(bound, 3)}"]
     if values is not None:
-        low = max(math.floor(values[0] * _DIGITS) / _DIGITS, 0.0)
-        # A bound above one is so by the proof's own rounding.
-        high = min(math.ceil(values[1] * _DIGITS) / _DIGITS, 1.0)
+        # A bound just outside of [0, 1] is so by the rounding of the proof.
+        low, high = (round(end) if abs(end - round(end)) <= _ROUNDING else end for end in values)
+        low, high = math.floor(low * _DIGITS) / _DIGITS, math.ceil(high * _DIGITS) / _DIGITS
         found.append(f"values in [{low:g}, {high:g}]")
     if (certificates.conservative_bound or 0) > 0:
         found.append("none above the exact value")

@@ -1,4 +1,4 @@
-"""A fit, written down as a table."""
+"""From a fit to a table."""
 
 import json
 import platform
@@ -18,9 +18,10 @@ _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
 
 
 def table_of(fit: Fit, command: str, name: str | None = None) -> Table:
-    """Write down a fit as a table, by the quantity's name or another.
+    """Return the table of a fit.
 
-    `command` is what made it.
+    `command` is the command line that made it. `name` is the table's name; None stands for the name
+    of the quantity.
     """
     form = fit.fitted.form
     record = {

@@ -1,7 +1,7 @@
-"""A search among forms: candidates fitted one after the other, their tables kept in a folder.
+"""A search among forms: the candidates are fitted in turn, and their tables are kept in a folder.
 
-A candidate's table is written as soon as it is fitted; a later run with the same folder takes it
-from there, so that an interrupted search goes on where it stopped.
+A candidate's table is written as soon as it is fitted. A later run with the same folder reads it
+instead of fitting again, so that an interrupted search continues where it stopped.
 """
 
 import hashlib
@@ -26,7 +26,11 @@ from quantities import Problem
 
 @dataclass(frozen=True)
 class Found:
-    """A candidate: its table's name, file, operations a call, and errors off the grid."""
+    """A table with its operations a call and its rms and largest error.
+
+    `form` is the name of the form ('exact' for the closed form), `coefficients` their number, and
+    `file` the table's file. The errors of a candidate are at points that its fit did not use.
+    """
 
     name: str
     form: str
@@ -39,10 +43,12 @@ class Found:
 
 @dataclass(frozen=True)
 class Result:
-    """What a search found: all candidates, the best of them, and what to hold them against.
+    """What a search found.
 
-    `best` holds those that no other one beats in both operations and largest error. `refused`
-    counts the candidates that have poles, or are not shown to have none.
+    * `found`: all candidates that were fitted.
+    * `best`: those on the frontier of operations against the largest error (`best_so_far`).
+    * `published`, `exact`: the published table and the closed form, for comparison, if they exist.
+    * `refused`: the number of candidates whose fit or proof failed, mostly because of poles.
     """
 
     found: list[Found]
@@ -54,9 +60,12 @@ class Result:
 
 @dataclass(frozen=True)
 class Search:
-    """A search for forms of a quantity: what is tried, and where it is kept.
+    """A search for forms of a quantity.
 
-    `budget` is the most operations a call; `lower` maps axes to lower ends of their domains.
+    * `owner`: the quantity. `goal`: the goal of the fits.
+    * `out`: the folder where the tables are kept.
+    * `budget`: the most operations a call that a candidate may have; None: any number.
+    * `lower`: maps the names of axes to the lower ends of their domains.
     """
 
     owner: Problem
@@ -66,7 +75,7 @@ class Search:
     lower: Mapping[str, float] | None = None
 
     def run(self, progress: Callable[[str], None] = lambda _: None) -> Result:
-        """Fit every candidate that is within the budget; raises ValueError if there is none."""
+        """Fit every candidate within the budget. Raises ValueError if no fit succeeds."""
         found: list[Found] = []
         refused, last = 0, None
         for form in self.candidates():
@@ -74,7 +83,7 @@ class Search:
             def tell(stage: str, done: int = len(found)) -> None:
                 progress(f"{done} forms; {stage}")
 
-            # The count needs no values: forms beyond the budget are never fitted.
+            # Operations are counted without a fit, so that forms beyond the budget cost no time.
             if self.budget is not None and self._blank_cost(form) > self.budget:
                 continue
             if self._refusal(form).is_file():
@@ -88,17 +97,17 @@ class Search:
             last = form
         if last is None:
             raise ValueError(
-                f"no form of {self.owner.name} was found within {self.budget} operations"
+                f"no form of {self.owner.name} was found"
+                f"{'' if self.budget is None else f' within {self.budget} operations'}"
             )
         return Result(
             found, best_so_far(found), self._published(last), self._closed_form(), refused
         )
 
     def candidates(self) -> Iterator[Form]:
-        """Yield the forms to try, those of the best tables first if the quantity says so."""
-        assert self.owner.candidates is not None
+        """Yield the forms to try. If `owner.searches_best`, those of best tables come first."""
         lower = self.lower or {}
-        tried = self.owner.candidates(lower)
+        tried = self.owner.tried(lower)
         if not self.owner.searches_best:
             return tried
         known = [e.require_fitted().form for e in entries(self.owner) if e.kind == "best"]
@@ -110,12 +119,19 @@ class Search:
         return itertools.chain(same, tried)
 
     def name_of(self, form: Form) -> str:
-        """Name a candidate by its family and a digest of its shape and goal: always the same."""
+        """Return a candidate's name: its family and a digest of its shape and goal.
+
+        It is the same in every run, so that its table is found again.
+        """
         text = json.dumps([form.shape, asdict(self.goal)], sort_keys=True)
         return f"{form.name}-{hashlib.sha256(text.encode()).hexdigest()[:10]}"
 
     def _blank_cost(self, form: Form) -> int:
-        """Count a form's operations with numbers that are neither 0 nor 1 nor equal."""
+        """Count the operations of a form that is not fitted yet.
+
+        The coefficients are arbitrary. They are not 0, 1 or equal, because this could simplify the
+        program.
+        """
         blank = form.fitted(0.37 + 0.013 * np.arange(form.size))
         return operations_of(Entry("blank", "file", self.owner, None, blank))
 
@@ -129,11 +145,11 @@ class Search:
         return table if same and table.errors is not None else None
 
     def _refusal(self, form: Form) -> Path:
-        """Return the file that says why a candidate was refused, so that it is not tried again."""
+        """Return the file that says why a candidate was refused. If it exists, no fit is tried."""
         return self.out / f"{self.name_of(form)}.refused.txt"
 
     def _fitted(self, form: Form, tell: Callable[[str], None]) -> Table | None:
-        """Fit a candidate and write its table; None, and why, where it is refused."""
+        """Fit a candidate and write its table. If it is refused, write why and return None."""
         name = self.name_of(form)
         try:
             made = fit(form, self.goal, progress=tell)
@@ -160,7 +176,10 @@ class Search:
         )
 
     def _published(self, candidate: Form) -> Found | None:
-        """Judge the published table where the candidates, which share a domain, are defined too."""
+        """Return the published table with its errors in the domain of the candidates, if any.
+
+        All candidates have the same domain, so that one of them suffices.
+        """
         entry = published(self.owner)
         if entry is None:
             return None
@@ -177,7 +196,7 @@ class Search:
         )
 
     def _closed_form(self) -> list[Found]:
-        """Return the closed form, at which every frontier ends, if there is one."""
+        """Return a list with the closed form; it is empty if there is none."""
         return [
             Found(mark.name, "exact", 0, mark.operations, mark.rms, mark.largest, "")
             for mark in closed_form(self.owner)

@@ -1,4 +1,4 @@
-"""Coefficient tables: what is written to and read from JSON. Host data only, no JAX."""
+"""Coefficient tables, as they are written to JSON and read from it. This module needs no JAX."""
 
 import math
 from pathlib import Path
@@ -10,26 +10,24 @@ from coefficients.json_text import laid_out, read_object
 from fitting.goal import Norm, Rounding, Side
 
 SCHEMA = "shadefit.table/1"
-# No table is near this size: a larger file is refused before it is parsed.
+# A larger file is refused before it is parsed. All real tables are far smaller.
 MAX_BYTES = 4 << 20
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
-# What is proven to lie in [0, 1] does so but for the rounding of the proof.
-Fraction = Annotated[Number, Field(ge=-1e-11, le=1 + 1e-11)]
-# Text is shown on terminals and in comments of code: no control codes, no line breaks, and none of
-# the characters that have no width or turn the direction of writing.
+# Text is shown on terminals and in comments of code. It must not have control codes, line breaks,
+# characters without width, or characters that change the direction of writing.
 UNSEEN = r"\x00-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff"
 Text = Annotated[str, Field(max_length=2000, pattern=f"^[^{UNSEEN}]*$")]
 Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$")]
-# A key that is no name (or text) is one too many.
+# In the JSON Schema: no keys are allowed that do not match the pattern of the keys.
 _CLOSED = Field(json_schema_extra={"additionalProperties": False})
 Vector = Annotated[list[Number], Field(max_length=4096)]
 Row = Annotated[list[Number], Field(min_length=1, max_length=4096)]
 Labels = Annotated[list[Text], Field(max_length=4096)]
 LabelRow = Annotated[list[Text], Field(min_length=1, max_length=4096)]
 Pair = Annotated[list[int], Field(min_length=2, max_length=2)]
-# What tells the members of a family of forms apart: checked by quantities/family.py.
+# The arguments of a family's function, which identify a form (checked by quantities/family.py).
 Shape = Annotated[
     dict[Name, int | Number | Text | Annotated[list[Pair], Field(max_length=64)]], _CLOSED
 ]
@@ -40,7 +38,7 @@ class _Part(BaseModel):
 
 
 class Argument(_Part):
-    """One argument: its name, unit ('rad' or '1') and the closed domain of the table."""
+    """One argument: its name, its unit ('rad' or '1'), and its domain, a closed interval."""
 
     name: Text
     unit: Literal["1", "rad"]
@@ -62,9 +60,9 @@ class Nodes(_Part):
 
 
 class GridRecord(_Part):
-    """The fitting grid: nodes along each argument, and lights at each node (0: none).
+    """The fitting grid: nodes along each argument, and lights at each node (0 if there are none).
 
-    A form that is fitted on scattered points has no nodes, but a number of `points`.
+    A form that was fitted to scattered points has no nodes; `points` is the number of these points.
     """
 
     nodes: list[Nodes]
@@ -73,7 +71,7 @@ class GridRecord(_Part):
 
 
 class GoalRecord(_Part):
-    """What the fit made small: see fitting/goal.py."""
+    """What the fit minimised, and its constraints: see fitting/goal.py."""
 
     norm: Norm
     relative: bool
@@ -83,14 +81,14 @@ class GoalRecord(_Part):
 
 
 class Reference(_Part):
-    """The leg that gave the exact values, and a bound on its error over the fitting grid."""
+    """The method of the exact values, and a bound on its error at the points of the fit."""
 
     leg: Literal["closed_form", "quadrature", "monte_carlo"]
     error: Annotated[Number, Field(ge=0)]
 
 
 class ErrorRecord(_Part):
-    """Rms and largest absolute error on a set of points, and where the largest is."""
+    """The rms and the largest absolute error at a number of points; `where` has the largest."""
 
     rms: Annotated[Number, Field(ge=0)]
     max: Annotated[Number, Field(ge=0)]
@@ -99,24 +97,25 @@ class ErrorRecord(_Part):
 
 
 class ErrorRecords(_Part):
-    """Errors on the fitting grid and on points off it."""
+    """Errors at the points of the fit and at points that it did not use."""
 
     on_grid: ErrorRecord
     off_grid: ErrorRecord
 
 
 class Certificates(_Part):
-    """Proven on the whole domain: a lower bound of every denominator (None: there is none).
+    """What is proven on the whole domain, by branch and bound over a number of boxes.
 
-    Every value is within `range`, and that to 1e-12 within [0, 1] (None: it is not proven). No
-    coefficients of the form have a largest error below `least_error`, where it is known. Where
-    `conservative_bound` is positive, no value is above the exact one: it is a lower bound of what
-    the form leaves (fitting/velvet.py).
+    Every denominator is at least `denominator_bound`; without a bound there is no denominator.
+    Every value is within `range`, and that within the quantity's codomain but for the rounding of
+    the proof; without a range this is not proven. No coefficients of the form have a largest error
+    below `least_error`. If `conservative_bound` is positive, no value is above the exact one: it is
+    a lower bound of a quantity that would be negative there (quantities/fuzz/velvet_form.py).
     """
 
     denominator_bound: Positive | None = None
     boxes: Annotated[int, Field(ge=0)]
-    range: Annotated[list[Fraction], Field(min_length=2, max_length=2)] | None = None
+    range: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
     least_error: Positive | None = None
     conservative_bound: Number | None = None
 
@@ -128,7 +127,7 @@ class Certificates(_Part):
 
 
 class Provenance(_Part):
-    """What made the table: the command, the versions of what it ran on, and the solver."""
+    """What made the table: the command, the versions of Python and of libraries, and the solver."""
 
     command: Text
     versions: Annotated[dict[Text, Text], _CLOSED]
@@ -136,7 +135,7 @@ class Provenance(_Part):
 
 
 class Erratum(_Part):
-    """One erratum of a published table; `exchange_rows` is applied when it is corrected."""
+    """One erratum of a published table. `exchange_rows`: two rows of coefficients to exchange."""
 
     id: Name
     where: Text
@@ -157,10 +156,10 @@ class Publication(_Part):
 
 
 class Table(_Part):
-    """A form's coefficients for one quantity, with all that is known of their worth.
+    """The coefficients of a form of one quantity, with their errors, proofs and origin.
 
-    A refitted table has `grid`, `weight`, `reference`, `errors`, `certificates` and
-    `provenance`; a published one has `publication` instead.
+    A fitted table has `grid`, `weight`, `reference`, `errors`, `certificates` and `provenance`. A
+    published table has `publication` instead.
     """
 
     schema_: Literal["shadefit.table/1"] = Field(alias="schema")
@@ -211,15 +210,16 @@ def json_schema() -> dict[str, Any]:
 
 
 def parse(text: str, source: str) -> Table:
-    """Read a table from JSON text; `source` names it in errors.
+    """Read a table from JSON text. `source` is its name in error messages.
 
-    Raises ValueError, one line, for anything that is not a valid table.
+    Raises ValueError with a message of one line for anything that is not a valid table.
     """
     try:
         return Table.model_validate(read_object(text), strict=True)
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
-        # Of a choice of types the validator names each: a reader sees only keys and indices.
+        # The place of an error contains keys and indices, and the types that the validator tried.
+        # Only keys and indices help a reader.
         parts = [str(part) for part in first["loc"] if "[" not in str(part)]
         place = ".".join(parts) or "the table"
         message = first["msg"].removeprefix("Value error, ")
@@ -231,13 +231,13 @@ def parse(text: str, source: str) -> Table:
 
 
 def _one_line(text: str) -> str:
-    """Make what may come from a hostile file fit to be shown: short, and without control codes."""
+    """Shorten text and remove control codes, because it may come from a hostile file."""
     shown = " ".join("".join(c if c.isprintable() else " " for c in text[:300]).split())
     return shown if len(text) <= 200 else f"{shown[:200]}…"
 
 
 def read(path: Path) -> Table:
-    """Read a table from a file. Raises ValueError for a file that is missing or no table."""
+    """Read a table from a file. Raises ValueError if it is missing or not a valid table."""
     try:
         if not path.is_file():
             raise ValueError(f"{path}: no such file")
@@ -252,6 +252,10 @@ def read(path: Path) -> Table:
 
 
 def serialise(table: Table) -> str:
-    """Return a table's JSON text: keys in a fixed order, floats that round-trip, rows on a line."""
+    """Return a table as JSON text.
+
+    Keys have a fixed order, and numbers have as many digits as are needed to read the same number
+    again.
+    """
     data = table.model_dump(by_alias=True, exclude_none=True)
     return laid_out(data) + "\n"

@@ -1,10 +1,12 @@
-"""Compact forms of exact values: fitted to a goal, measured on points no fit saw, certified.
+"""Compact forms that approximate exact values, and how their coefficients are found and checked.
 
-A `Form` is a function without the values of its coefficients; `fitting.fit.fit` finds these,
-whatever the form, and returns a `Fit` with its errors and proofs. Rooms: `shapes/` (generic forms),
-`points/` (where forms are fitted and judged), `solvers/`, and `proofs/`.
+A `Form` is a function whose coefficients have no values yet. `fitting.fit.fit` finds the values for
+any form and returns a `Fit`: the coefficients, the errors at points that the fit did not use, and
+proofs for the whole domain. Folders: `shapes/` (formulas that several forms share), `points/`
+(where forms are fitted and judged), `solvers/` and `proofs/`.
 
-The names below are imported when they are first used: `fitting.goal` does not wait for JAX.
+The names below are imported when they are first used, so that a program that needs only
+`fitting.goal` does not wait for the import of JAX.
 """
 
 from importlib import import_module

@@ -16,7 +16,10 @@ _BATCH = 8192
 
 @dataclass(frozen=True)
 class Errors:
-    """The rms error, the largest in absolute value, and where that is (axis name → value)."""
+    """The rms error, the largest absolute error and its place, measured at a number of `points`.
+
+    `where` maps the names of the axes to the point that has the largest error.
+    """
 
     rms: float
     largest: float
@@ -26,11 +29,14 @@ class Errors:
 
 @dataclass(frozen=True)
 class HillClimbing:
-    """A search for larger errors, starting at the worst point of each of `cells`ⁿ cells.
+    """A search for larger errors than those at the points that were tried.
 
-    In each round the best points are perturbed by normal steps of these `radii`, as fractions of
-    the domain: the largest error may be on a ridge that few points are on. `steps` bounds the
-    number of points that are tried in a round.
+    The domain of n axes is divided into `cells`ⁿ equal cells. The search starts at the worst point
+    of each cell. It is needed because the largest error may lie on a narrow ridge that the points
+    miss. There is a round for each of `radii`: each cell's point is moved by random steps, and the
+    point with the largest error is kept. The steps have a normal distribution whose standard
+    deviation is the radius, as a fraction of the domain. At most `steps` points are tried in a
+    round.
     """
 
     cells: int = 4
@@ -40,9 +46,10 @@ class HillClimbing:
     def __call__(
         self, size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], seed: int
     ) -> np.ndarray:
-        """Return points (cells, axes) of larger `size`, one from each cell that holds points.
+        """Return the points (m, axes) that the search ends at, one for each cell with points.
 
-        `size` maps points (m, axes) to sizes (m,), and `sizes` are those of `points` (n, axes).
+        `size` maps points (k, axes) to what is searched for a maximum (k,), usually the absolute
+        error; `sizes` (n,) are its values at `points` (n, axes).
         """
         lower, upper = box_of(axes).T
         rng = np.random.default_rng(seed)
@@ -70,14 +77,18 @@ climb = HillClimbing()
 
 
 def form_values(fitted: FittedForm, points: np.ndarray) -> np.ndarray:
-    """Evaluate a form at points (n, axes): (n,)."""
+    """Return a form's values (n,) at points (n, axes)."""
     return np.asarray(in_batches(functools.partial(_apply, fitted), points, _BATCH))
 
 
 def measure(
     difference: np.ndarray, points: np.ndarray, domain: Form | Domain, weights=None
 ) -> Errors:
-    """Sum up the differences (n,) between a form and the exact values at points (n, axes)."""
+    """Return the errors of a form, given its differences (n,) from the exact values at points.
+
+    `points` is (n, axes). `weights` (n,) are those of the squared errors in the rms; None weighs
+    all points equally.
+    """
     worst = int(np.argmax(np.abs(difference)))
     where = {axis.name: float(x) for axis, x in zip(domain.axes, points[worst], strict=True)}
     rms = float(np.sqrt(np.average(difference**2, weights=weights)))
@@ -85,11 +96,12 @@ def measure(
 
 
 def judge(fitted: FittedForm, domain: Form | Domain | None = None) -> Errors:
-    """Measure a form on points that no fit sees, of its own domain or of another.
+    """Return the errors of a form at points that no fit uses, in its own domain or in `domain`.
 
-    The rms error is over scrambled Sobol' points. The largest is over these, over points on faces,
-    edges and corners of the domain and where the quantity is steep, and over what hill climbing
-    finds from there.
+    The rms error is over scrambled Sobol' points. The largest error is the largest of three: over
+    the same points; over further points, some of them on the faces, edges and corners of the domain
+    and where the quantity is steep; and over the points that hill climbing finds from these, unless
+    the quantity's sampling turns hill climbing off.
     """
     domain = fitted.form if domain is None else domain
     points, exact = judging_points(domain)

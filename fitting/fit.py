@@ -1,4 +1,4 @@
-"""One way to fit any form: on a grid, on scattered points, to a goal, with errors and proofs."""
+"""The function `fit`, which fits any form, measures its errors, and proves what can be proven."""
 
 from dataclasses import dataclass
 
@@ -17,27 +17,37 @@ from fitting.solvers.on_grid import MARQUARDT, GridFit, OnGrid, Progress
 from programs.bounding.branch_and_bound import Bounds
 from programs.bounding.denominators import DenominatorBound
 
-# Fewer nodes than this an axis leave the 27 coefficients of a row of Eq. (2) undetermined.
+# 5 nodes an axis or fewer do not determine the 27 coefficients of a row of Eq. (2). 9 nodes give 81
+# values, three for each coefficient.
 MIN_NODES = 9
-# More would need over 1 GiB for the Jacobian of the joint fit of P_s.
+# At 129 nodes an axis the exact values of P_s take 0.3 GB: 129² materials, 2,304 lights each.
 MAX_NODES = 129
-# Denominators of fits to scattered points are shown to be above this.
+# After a fit to scattered points, the search for a lower bound of the denominators ends once it has
+# proven this one: that there is no pole is shown by any positive bound.
 ENOUGH = 1e-6
-# Values of forms of more arguments are not bounded in any number of boxes that can be held.
+# Over more axes, branch and bound would need too many boxes to bound a form's values. Such a form
+# needs margins (`Proofs.margins`) for a bounded goal.
 MOST_AXES = 2
 
 
 @dataclass(frozen=True)
 class Fit:
-    """A form with its coefficients, where and how it was made, and how good it is.
+    """A form with its coefficients, how they were found, and how good they are.
 
-    * `grid`: the grid or the scattered points that it was fitted on. `inner` counts the second
-      stage's points a node (0: there are none); `measure` names their weights.
-    * `solver`: what solved it, in words. `reference_error` bounds the error of the exact values.
+    * `fitted`: the form with its coefficients.
+    * `grid`: the grid or the scattered points of the fit. On a grid, a form of two stages has
+      `inner` points of the second stage at each node; 0 means that there are none.
+    * `measure`: the name of the quantity's measure that weighs the errors.
+    * `solver`: the solver, in words. `reference_error` is a bound on the error of the exact values.
+    * `on_grid`: the errors at the points of the fit. `off_grid`: at points that it did not use.
     * `certificate`: the proof that no denominator vanishes.
-    * `least_error`: no coefficients of the form have a smaller largest error; None: unknown.
-    * `range`: bounds of all values; None where they are not shown to lie between 0 and 1.
-    * `below`: where it is positive, no value is above the exact one; None: not looked at.
+    * `goal`: what the fit minimises, and its constraints.
+    * `least_error`: the proven lower bound of the largest error that any coefficients of the form
+      can have; None if there is no such proof.
+    * `range`: proven bounds of all values, which lie between 0 and 1 up to rounding; None if this
+      is not proven.
+    * `below`: a number whose positive sign proves that no value is above the exact one; None for a
+      form that has no such proof.
     """
 
     fitted: FittedForm
@@ -65,13 +75,19 @@ def fit(
 ) -> Fit:
     """Fit a form to the exact values of its quantity.
 
-    With `nodes`, squared errors are first made small on a tensor grid of so many nodes an axis; a
-    goal other than that is then pursued on scattered points, from there. Without, all is done on
-    scattered points, from the form's own starts. `measure` names one of the quantity's measures, if
-    it has several. `progress` is told of each stage; `exchange` is the solver on scattered points.
+    The arguments besides `form` and `goal` are:
 
-    Raises ValueError for a number of nodes or a measure that is not allowed, and for a fit with a
-    denominator that is not shown to be positive. A bounded goal is refused where it is not proven.
+    * `nodes`: nodes along each axis of a tensor grid, on which a least squares fit is made. For
+      another goal, a fit to scattered points follows, which starts from the coefficients of the
+      grid. None: there is only the fit to scattered points, which starts from the form's starts.
+    * `measure`: the name of one of the quantity's measures, which weigh the errors. A quantity that
+      has only one measure takes that one.
+    * `progress`: a function that is called with a short text before each step.
+    * `exchange`: the solver on scattered points; None for the default one.
+
+    Raises ValueError for a number of nodes or a measure that is not allowed, for a fit with a
+    denominator that is not proven to be positive, and for a bounded goal if the bounds are not
+    proven.
     """
     _require(form, goal, nodes)
     measure = _measure_of(form, measure)
@@ -95,7 +111,10 @@ def _require(form: Form, goal: Goal, nodes: int | None) -> None:
 
 
 def _measure_of(form: Form, wanted: str) -> str:
-    """Return the measure of a fit; a quantity that has but one takes that, whatever is wanted."""
+    """Return the name of the measure to use: the one that is wanted, or the only one.
+
+    Raises ValueError if the quantity has several measures and not the one that is wanted.
+    """
     measures = form.reference.sampling.measures
     if len(measures) == 1:
         return next(iter(measures))
@@ -105,7 +124,7 @@ def _measure_of(form: Form, wanted: str) -> str:
 
 
 def _on_grid(form: Form, found: GridFit, nodes: int) -> Fit:
-    """Judge a least squares fit on a grid, and prove what can be proven."""
+    """Measure the errors of a least squares fit on a grid, and prove what can be proven."""
     fitted = form.fitted(found.coefficients)
     certificate = certify_denominators(fitted)
     name = form.reference.name
@@ -136,7 +155,7 @@ def _on_grid(form: Form, found: GridFit, nodes: int) -> Fit:
 def _scattered(
     form: Form, coefficients: np.ndarray, sample: Sample, goal: Goal, weights: str
 ) -> Fit:
-    """Judge a fit to scattered points, and prove what can be proven."""
+    """Measure the errors of a fit to scattered points, and prove what can be proven."""
     fitted = form.fitted(coefficients)
     certificate = certify_denominators(fitted, ENOUGH)
     if not certificate.holds:

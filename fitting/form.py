@@ -1,4 +1,4 @@
-"""What a form is: a compact function with coefficients that stands for a quantity."""
+"""Forms: compact functions with coefficients that approximate a quantity."""
 
 import inspect
 from collections.abc import Callable, Sequence
@@ -18,10 +18,11 @@ from programs.tracing.tracer import trace
 
 @dataclass(frozen=True)
 class Stage:
-    """One step in evaluating a form, and the line that describes it in exported code.
+    """One of the one or two steps in which a form is evaluated.
 
-    The first stage is called with the coefficients and the values of its axes. The second is called
-    with the results of the first, and with the values of its own arguments.
+    The first stage is called with the coefficients and the values of its axes. A second stage is
+    called with the results of the first, and with its own arguments, which `Form.inputs` computes.
+    `summary` is a line for the comments of exported code that describes the stage.
     """
 
     call: Callable[..., Any]
@@ -29,24 +30,27 @@ class Stage:
 
 
 def unguarded(*_) -> Array:
-    """Let a fit step where it will (for `Proofs.positive`): only the certificate excludes poles."""
+    """Return 1. As `Proofs.positive` it leaves a fit free: only the certificate excludes poles."""
     return jnp.ones(())
 
 
 @dataclass(frozen=True)
 class Proofs:
-    """How proofs see a form, where the form as it is evaluated is hard to bound.
+    """Functions that proofs and fits use instead of the form, because they are easier to bound.
 
-    All functions take the coefficients and a point of `axes` (None: the form's own).
+    `value` and `margins` take the coefficients and a point of `axes`, by default the form's axes.
+    `positive` takes the coefficients and a point of the form's axes.
 
-    * `value` is the form without the floors that keep rounding from dividing by zero.
-    * `margins` gives a tuple. If no element is negative anywhere, all values are in [0, 1].
-    * `positive` gives one number, which a fit keeps positive. None: the least divisor, radicand
-      and argument of a logarithm in the form's traced program.
-    * `below` takes the fitted form. It returns a lower bound of a quantity that is positive
-      only if no value of the form is above the exact one.
-
-    Branch and bound begins with the domain divided into `first_split` pieces along its first sides.
+    * `value`: the form without the lower limits that protect its denominators from rounding, since
+      with them a proof would not see whether a denominator vanishes. None: the form itself.
+    * `margins`: returns a tuple. If none of its elements is negative anywhere, all values of the
+      form are in [0, 1]. None: the values are bounded directly.
+    * `positive`: returns a number that a fit keeps positive. None: the least of the divisors,
+      radicands and arguments of logarithms in the form's traced program.
+    * `below`: takes the fitted form. If the number that it returns is positive, no value of the
+      form is above the exact one. None: there is no such proof.
+    * `first_split`: the number of pieces into which branch and bound divides the first axes before
+      it begins.
     """
 
     axes: tuple[Axis, ...] | None = None
@@ -59,18 +63,20 @@ class Proofs:
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """An approximant of one quantity: its function, without the values of its coefficients.
+    """A function that approximates a quantity, with coefficients that have no values yet.
 
-    `axes` are the quantity's, restricted to the domain that the form is fitted on. `equation` says
-    where the form is printed, or what it is. `coefficient_names` may be nested, and gives the shape
-    of the coefficients. `shape` tells the members of a family apart; other forms have none.
-
-    A form has one stage; or two, where much of the work is shared by many points: then the first
-    takes the first `shared` axes, and `inputs` maps all axes' values to the second's arguments.
-
-    `starts` are coefficients that a fit may start from; none of them is a published table's.
-    `solver` fits the form on a grid; None stands for the general one. `has_least_error` says that a
-    lower bound of the largest error is sought where the form is a quotient of linear functions.
+    * `reference`: the exact values. `axes`: the axes of the quantity, restricted to the domain that
+      the form is fitted on.
+    * `equation`: the formula, or where it is printed.
+    * `coefficient_names`: a list, or a nested list, which has the shape of the coefficients.
+    * `stages`: one; or two, if many points share a large part of the work. Then the first stage
+      takes the first `shared` axes, and `inputs` maps the values of all axes to the arguments of
+      the second stage.
+    * `starts`: coefficients that a fit may start from. None of them is from a published table.
+    * `shape`: the arguments that make this form in its family; None for a form of no family.
+    * `solver`: fits the form on a grid (`fitting/solvers`); None stands for the general `OnGrid`.
+    * `has_least_error`: whether to look for a lower bound of the largest error. There is one only
+      for a form that is a quotient of linear functions of its coefficients.
     """
 
     name: str
@@ -94,22 +100,22 @@ class Form:
 
     @property
     def size(self) -> int:
-        """How many coefficients there are."""
+        """The number of coefficients."""
         return int(np.size(self.coefficient_names))
 
     def __call__(self, coefficients: Array | np.ndarray, *point) -> Array:
-        """Evaluate the form at one point, scalars in radians where the unit is so."""
+        """Evaluate the form at one point: a scalar for each axis, in the axis's unit."""
         if self.inputs is None:
             return self.stages[0].call(coefficients, *point)
         inputs = self.inputs(*point)
         return self.stages[1].call(self.first(coefficients, *point[: self.shared]), *inputs)
 
     def first(self, coefficients: Array | np.ndarray, *shared) -> Any:
-        """Evaluate the first stage at the axes that it takes."""
+        """Evaluate the first stage at values of the axes that it takes."""
         return self.stages[0].call(coefficients, *shared)
 
     def fitted(self, coefficients: Array | np.ndarray) -> "FittedForm":
-        """Return the form with coefficients, which are in their shape or flat."""
+        """Return the form with these coefficients, given in their shape or as a flat array."""
         return FittedForm(self, jnp.asarray(coefficients).reshape(self.coefficient_shape))
 
 
@@ -120,19 +126,21 @@ def plain_form(
     name: str | None = None,
     axes: tuple[Axis, ...] | None = None,
 ) -> Form:
-    """Make a form of a plain function: arguments named like axes are axes, the rest coefficients.
+    """Make a form of a plain function of scalars.
 
-    Arguments: `start`, coefficients that a fit may start from, none for a form that is a quotient
-    of linear functions; `name`, by default the function's; `axes`, those of the reference
-    restricted to the form's domain. The first line of the function's docstring is the equation.
-    Raises ValueError for a function that does not take every axis, and for a start of another
-    length.
+    The function's arguments that are named like axes are the axes; all others are coefficients. The
+    first line of the function's docstring is the equation.
+
+    Arguments: `start`, coefficients that a fit may start from, which a quotient of linear functions
+    of its coefficients does not need; `name`, by default the function's; `axes`, the axes of the
+    reference restricted to the form's domain, by default not restricted. Raises ValueError for a
+    function that does not take every axis, and for a start of the wrong length.
     """
     axes = reference.axes if axes is None else axes
     of_axes = [axis.name for axis in axes]
     arguments = list(inspect.signature(function).parameters)
     coefficients = [each for each in arguments if each not in of_axes]
-    own = name or function.__name__.replace("_", "-")
+    own = name or getattr(function, "__name__", "form").replace("_", "-")
     for missing in (each for each in of_axes if each not in arguments):
         raise ValueError(f"{own} does not take {missing!r}: allowed is a function of all axes")
     if len(start) not in (0, len(coefficients)):
@@ -148,7 +156,7 @@ def plain_form(
 
 
 class FittedForm(eqx.Module):
-    """A form with its coefficients, which are its only array leaf."""
+    """A form with the values of its coefficients, which are the only part that JAX traces."""
 
     form: Form = eqx.field(static=True)
     coefficients: Array | np.ndarray
@@ -158,7 +166,7 @@ class FittedForm(eqx.Module):
         return self.form(self.coefficients, *point)
 
     def first(self, *shared) -> Any:
-        """Evaluate the first stage at the axes that it takes."""
+        """Evaluate the first stage at values of the axes that it takes."""
         return self.form.first(self.coefficients, *shared)
 
     @property
@@ -168,19 +176,22 @@ class FittedForm(eqx.Module):
 
     @property
     def reference(self) -> Reference:
-        """The exact values that the form stands for."""
+        """The exact values that the form approximates."""
         return self.form.reference
 
     @property
     def constants(self) -> np.ndarray:
-        """The coefficients as NumPy numbers, which a trace takes for constants."""
+        """The coefficients as a NumPy array, which a traced program holds as constants."""
         return np.asarray(self.coefficients, np.float64)
 
 
 def traced(
     fitted: FittedForm, call: Callable, axes: tuple[Axis, ...], results: int | None = None
 ) -> Program:
-    """Trace a function of a form on some axes: of a scalar, or of a tuple of `results`."""
+    """Trace `call`, a function of a fitted form, as a program whose inputs are `axes`.
+
+    `results` is the length of the tuple that `call` returns; None if it returns a scalar.
+    """
     parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
     reference = fitted.reference
     summary = f"{reference.symbol} by {fitted.form.equation}"

@@ -1,4 +1,4 @@
-"""What a fit makes small, and the words for it."""
+"""The goal of a fit: what it minimises, its constraints, and the words that name them."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -13,11 +13,14 @@ ROUNDINGS: tuple[Rounding, ...] = get_args(Rounding)
 
 @dataclass(frozen=True)
 class Goal:
-    """Least squares ('l2') or least largest error ('linf'), of the error or of the relative one.
+    """What a fit minimises, and its constraints.
 
-    `side` 'below' allows no value above the exact one, so that energy is lost and not created; it
-    needs 'linf'. `rounding` is the precision that the coefficients are kept in. All values of a
-    `bounded` fit are between 0 and 1, and proven to be; it needs 'linf' too.
+    * `norm`: 'l2' minimises the sum of squared errors, 'linf' the largest error.
+    * `relative`: errors are divided by the exact value.
+    * `side`: 'below' allows no value above the exact one, for a quantity that must not create
+      energy; 'above' allows none below it. Both need 'linf'.
+    * `rounding`: the precision that the coefficients are rounded to.
+    * `bounded`: all values must be between 0 and 1, and proven to be. It needs 'linf'.
     """
 
     norm: Norm = "l2"
@@ -27,7 +30,7 @@ class Goal:
     bounded: bool = False
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a side or bounds with least squares."""
+        """Raise ValueError for a `side` or `bounded` with least squares."""
         if self.side != "both" and self.norm != "linf":
             raise ValueError(f"side = {self.side!r} with norm = 'l2': allowed with norm = 'linf'")
         if self.bounded and self.norm != "linf":

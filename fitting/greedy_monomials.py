@@ -1,4 +1,4 @@
-"""A greedy choice of monomials: one is added at a time, the one that lowers the error most."""
+"""A greedy choice of a quotient's monomials: each step adds the one that lowers the error most."""
 
 from collections.abc import Iterator
 
@@ -9,20 +9,24 @@ from fitting.linearity import linear_parts
 from fitting.points.sample import Sample, sample_of
 from fitting.shapes.monomials import Exponents
 
-# How many monomials the last set has, and iterations of the linear problem that judges a set.
+# The number of monomials of the last set.
 MOST = 20
+# A set is judged by a linear fit, which divides the errors by the denominator of the fit before.
+# This is the number of such fits.
 LINEARISED = 3
 
+# The exponents of the monomials of a numerator and of a denominator.
 Choice = tuple[Exponents, Exponents]
 
 
 def greedy_sets(
     whole: Form, numerator: Exponents, denominator: Exponents, start: Choice, most: int = MOST
 ) -> Iterator[Choice]:
-    """Yield sets of monomials for a numerator and a denominator, from `start` to `most` monomials.
+    """Yield sets of monomials for a numerator and a denominator, each with one more than before.
 
-    `whole` is the quotient of all monomials of `numerator` and `denominator`, whose coefficients
-    are in that order.
+    The first set is `start`; the last one has `most` monomials. They are chosen from `numerator`
+    and `denominator`. `whole` is the quotient of all of these; its coefficients are those of the
+    numerator, then those of the denominator.
     """
     above, below = start
     sums = _Columns(whole, numerator, denominator)
@@ -37,7 +41,10 @@ def greedy_sets(
 
 
 class _Columns:
-    """The columns of every monomial at the sample, so that a set is judged by a small problem."""
+    """The values of all monomials at the points of the fit.
+
+    They are computed once. A set is then judged by a linear fit with the columns of its monomials.
+    """
 
     def __init__(self, whole: Form, numerator: Exponents, denominator: Exponents):
         """Evaluate every monomial once."""
@@ -48,7 +55,7 @@ class _Columns:
         self.parts = parts
 
     def error(self, above: Exponents, below: Exponents) -> float:
-        """Return the rms error of the set's last linear problem; ∞ where it has a pole."""
+        """Return the rms error of a set after its last linear fit; ∞ if a fit has a pole."""
         parts, exact = self.parts, self.sample.exact
         columns = [self.numerator.index(each) for each in above]
         columns += [len(self.numerator) + self.denominator.index(each) for each in below]

@@ -1,7 +1,8 @@
-"""What a form's traced program tells: what is linear in the coefficients, what must be positive.
+"""What is derived from a form's traced program: its linear parts, and what must stay positive.
 
-Whether a form is a quotient (a₀ + a·c)/(b₀ + b·c), linear in its coefficients c above and below, is
-found by evaluating its program over such quotients instead of numbers.
+Many forms are quotients (a₀ + a·c)/(b₀ + b·c), whose numerator and denominator are linear in the
+coefficients c. To find out, the program is evaluated with such quotients in place of numbers: each
+coefficient enters as the quotient cₖ/1, and each operation either returns a quotient or fails.
 """
 
 import functools
@@ -20,7 +21,7 @@ from programs.operations import OPERATIONS
 from programs.program import Program, interpret, subprogram
 from programs.tracing.tracer import trace
 
-# Coefficients are traced as inputs; their range says nothing.
+# Tracing needs a range for every input, but nothing here depends on it.
 _ANY = (-1.0, 1.0)
 
 
@@ -35,13 +36,13 @@ class LinearParts:
 
     @property
     def is_linear(self) -> bool:
-        """Whether the denominator holds no coefficient."""
+        """Whether the denominator has no coefficient."""
         return not np.any(self.b)
 
 
 @functools.lru_cache(maxsize=64)
 def program_of(form: Form) -> Program:
-    """Trace a form as a program of its coefficients, flat, followed by its axes."""
+    """Trace a form. The inputs of the program are the flat coefficients, then the axes."""
     coefficients = Parameter("c", _ANY, size=form.size) if form.size else None
     points = tuple(Parameter(axis.name, _ANY) for axis in form.axes)
 
@@ -56,7 +57,7 @@ def program_of(form: Form) -> Program:
 
 
 def linear_parts(form: Form, points: np.ndarray) -> LinearParts | None:
-    """Split a form into its linear parts at points (n, axes); None if it is no such quotient."""
+    """Return the linear parts of a form at points (n, axes); None if it is no such quotient."""
     size = form.size
     inputs = [*(_Quotient.coefficient(k) for k in range(size)), *points.T]
     try:
@@ -71,12 +72,12 @@ def linear_parts(form: Form, points: np.ndarray) -> LinearParts | None:
 
 
 class _NotLinear(Exception):
-    """The program does something with a coefficient that no quotient of linear functions does."""
+    """The result of an operation is not a quotient of linear functions of the coefficients."""
 
 
 @dataclass(frozen=True)
 class _Affine:
-    """constant + Σ slopes[k]·cₖ, where numbers are arrays (n,) or scalars."""
+    """constant + Σ slopes[k]·cₖ; the constant and the slopes are arrays (n,) or scalars."""
 
     constant: Any
     slopes: dict[int, Any]
@@ -120,7 +121,8 @@ def _sum(sign: float):
         left, right = _Quotient.of(one), _Quotient.of(other)
         if left.below is right.below:
             return _Quotient(left.above.plus(right.above, sign), left.below)
-        # Over one denominator, where the other has none.
+        # One operand has the denominator 1 and no coefficient: it is multiplied by the other's
+        # denominator.
         if right.below is _ONE and not right.above.slopes:
             lifted = left.below.scaled(right.above.constant)
             return _Quotient(left.above.plus(lifted, sign), left.below)
@@ -152,7 +154,11 @@ def _division(one: Any, other: Any) -> _Quotient:
 
 
 def _lifted(name: str) -> Callable[..., Any]:
-    """Return an operation on numbers, by NumPy, and on quotients, by a rule if there is one."""
+    """Return an operation that takes numbers and quotients.
+
+    Numbers go to NumPy. Quotients go to the operation's rule, and _NotLinear is raised if it has
+    none.
+    """
     rules = {
         "add": _sum(1.0),
         "sub": _sum(-1.0),
@@ -176,10 +182,11 @@ _RULES = {name: _lifted(name) for name in OPERATIONS}
 
 @functools.lru_cache(maxsize=64)
 def derived_positive(form: Form) -> Callable[..., Array]:
-    """Return a function of coefficients and a point: the least of what must stay positive there.
+    """Return a function of coefficients and a point whose value must stay positive.
 
-    These are the divisors, radicands and arguments of logarithms in the form's program that hold
-    a coefficient. A divisor that is itself a root is left out: its radicand stands for it.
+    It is the least of the divisors, radicands and arguments of logarithms in the form's program, as
+    far as they depend on a coefficient. A divisor that is a square root is left out, because its
+    radicand is among them.
     """
     program = program_of(form)
     found = {
@@ -207,7 +214,7 @@ def derived_positive(form: Form) -> Callable[..., Array]:
 
 
 def positive_of(form: Form) -> Callable[..., Array]:
-    """Return what a fit of the form keeps positive: its own function, or the derived one."""
+    """Return the function that a fit keeps positive: the form's own, or else the derived one."""
     return form.proofs.positive or derived_positive(form)
 
 

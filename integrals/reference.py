@@ -35,19 +35,27 @@ class Axis:
     The domain is [`lower`, `upper`], or without `lower` itself if `open_below` is true. `upper` may
     be infinite. `scale` says how points are distributed along the axis; 'logarithmic' needs
     `lower` > 0. `period` is set if the quantity is periodic in this argument. `alias` is a second,
-    shorter name for the option on the command line.
+    shorter name for the option on the command line. The symbol is by default the name.
     """
 
     name: str
-    symbol: str
-    unit: str
-    lower: float
-    upper: float
-    meaning: str
+    lower: float | int
+    upper: float | int
+    symbol: str = ""
+    unit: str = "1"
+    meaning: str = ""
     open_below: bool = False
     scale: Scale = "linear"
     period: float | None = None
     alias: str | None = None
+
+    def __post_init__(self) -> None:
+        """Take the name for a symbol that is not given; raise ValueError for an empty domain."""
+        if not self.lower < self.upper:
+            raise ValueError(f"{self.name} in [{self.lower:g}, {self.upper:g}]: it is empty")
+        object.__setattr__(self, "symbol", self.symbol or self.name)
+        object.__setattr__(self, "lower", float(self.lower))
+        object.__setattr__(self, "upper", float(self.upper))
 
     @property
     def domain(self) -> str:
@@ -127,6 +135,7 @@ class Reference:
     `sampling` says how many points forms are fitted on, checked at and judged by. `batch` is the
     number of points that `estimates` evaluates at once. `options_at` takes points (n, axes) and
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
+    `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
     """
 
     name: str
@@ -140,6 +149,7 @@ class Reference:
     monte_carlo: Leg | None = None
     batch: int = 8192
     options_at: Callable[[np.ndarray], dict[str, Any]] = lambda _: {}
+    codomain: tuple[float, float] = (0.0, 1.0)
 
     @property
     def legs(self) -> dict[str, Leg]:

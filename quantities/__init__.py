@@ -1,7 +1,7 @@
-"""Quantities: each is one `Problem` that says all that the program knows of it.
+"""Quantities: each is one `Problem` object, which holds all that the program knows about it.
 
-A folder a topic declares them (`fuzz/`), in the same terms in which a user declares another. The
-registry lists them by name.
+There is a folder for each topic (`fuzz/`) with a file for each quantity. A user declares another
+quantity in the same way. The registry lists the quantities by name.
 """
 
 from quantities.problem import Problem as Problem

@@ -1,7 +1,8 @@
 """How a quantity is called in a shader: names, order of arguments, clamps, and remarks.
 
-The expressions are those of the forms that were fitted: here they only get the names, domains and
-clamps of their arguments. Coefficients become constants, which the printer writes into the code.
+The exported functions evaluate the form that was fitted. This module only adds the names, domains
+and clamps of the arguments. The coefficients become constants, which the printer writes into the
+code.
 """
 
 from collections.abc import Callable
@@ -17,7 +18,7 @@ from fitting.form import FittedForm
 from integrals.reference import Axis
 from programs.functions import Function, Parameter, function
 
-# Nodes an axis at which a first stage is sampled for the range of its results.
+# The range of a first stage's results is found on a grid of this many nodes an axis.
 _SAMPLED = 33
 
 Points = np.ndarray
@@ -27,9 +28,11 @@ Points = np.ndarray
 class Argument:
     """One argument of an exported function.
 
-    `axis` names the axis of the form that it is, `name` is the argument's name in the shader.
-    `clamp` says at which ends of the form's domain the value is clamped; `local` is what the
-    clamped value is called in the code.
+    * `axis`: the name of the form's axis that the argument stands for.
+    * `name`: the name of the argument in the shader.
+    * `clamp`: the ends of the form's domain at which the value is clamped.
+    * `local`: the name of the variable in the code that holds the clamped value; None leaves the
+      choice to the printer.
     """
 
     axis: str
@@ -40,14 +43,16 @@ class Argument:
 
 @dataclass(frozen=True)
 class CallingConvention:
-    """The exported functions of a quantity.
+    """How the exported functions of a quantity are called.
 
-    `name` is that of the function that gives the value; `arguments` are its arguments or, of a form
-    with two stages, those of the first function, which is called Calc…Coeffs. `second` names the
-    further arguments of the second function, with their domains. `summary` and `remark` are written
-    into comments; '{equation}' in the summary stands for the form.
+    A form of one stage is exported as one function. A form of two stages is exported as two: the
+    first, Calc…Coeffs, returns results that are arguments of the second, which returns the value.
 
-    `columns` maps points (n, axes) of the form to the second function's arguments (n, …), in NumPy.
+    * `name`: the name of the function that returns the value.
+    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for the form.
+    * `arguments`: the arguments of the only function, or of the first of two.
+    * `second`: the names and domains of the second function's arguments after those results.
+    * `columns`: maps points (n, axes) of the form to these arguments (n, …), in NumPy.
     """
 
     name: str
@@ -58,15 +63,15 @@ class CallingConvention:
     columns: Callable[[Points], Points] | None = None
 
     def functions(self, fitted: FittedForm) -> tuple[Function, ...]:
-        """Return the functions that a fitted form is exported as, in the order of their calls."""
+        """Return the functions that a fitted form is exported as, in the order of the calls."""
         if fitted.form.inputs is None:
             return (self._only(fitted),)
         return self._first(fitted), self._second(fitted)
 
     def arguments_at(self, fitted: FittedForm, points: Points) -> tuple[Points, ...]:
-        """Return what the functions are called with at points (n, axes), an array (n, …) each.
+        """Return the arguments of each function at points (n, axes), as an array (n, …).
 
-        The results of the function before, which come first in a call, are not among it.
+        The results of the first function, which the second takes before these, are left out.
         """
         order = [self._place(fitted, argument) for argument in self.arguments]
         first = points[:, order]
@@ -123,7 +128,7 @@ class CallingConvention:
     def _point(self, fitted: FittedForm, given: tuple[Any, ...]) -> list[Any]:
         """Clamp arguments, and bring them into the order of the form's axes."""
         order = [self._place(fitted, argument) for argument in self.arguments]
-        # No assignment to a name: the traced program would take it over.
+        # The value is not assigned to a variable: its name would appear in the exported code.
         return [
             value
             for _, value in sorted(
@@ -132,16 +137,16 @@ class CallingConvention:
         ]
 
     def _clamped(self, fitted: FittedForm, given: tuple[Any, ...]) -> list[Any]:
-        """Clamp arguments to the form's domain, the last one first."""
+        """Clamp arguments to the form's domain; the last argument comes first in the code."""
         values = list(given)
         for k in reversed(range(len(values))):
-            # No assignment to a name: the traced program would take it over.
+            # The value is not assigned to a variable: its name would appear in the exported code.
             values[k] = _inside(values[k], self.arguments[k], self._axes(fitted)[k])
         return values
 
 
 def _inside(value: Any, argument: Argument, axis: Axis) -> Any:
-    """Clamp one argument, and name the result as the convention says."""
+    """Clamp one argument. If the convention has a name for the result, the code uses it."""
     if argument.clamp == "none":
         return value
     if argument.clamp == "both":
@@ -158,7 +163,7 @@ def _called(value: Any, name: str | None) -> Any:
 
 
 def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
-    """Return the functions with the last one, which gives the value, called `name`."""
+    """Rename the last function, which returns the value, to `name`, and a first one accordingly."""
     *before, last = functions
     changed = [
         replace(each, name=f"Calc{name}Coeffs", summary=each.summary.replace(last.name, name))
@@ -168,7 +173,7 @@ def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
 
 
 def _equation(fitted: FittedForm) -> str:
-    """Return the equation that a form is printed as in the paper, or its family's name."""
+    """Return a form's equation, such as 'Eq. 3', or for a form of a family the family's name."""
     form = fitted.form
     short = form.equation.replace("Eq. (", "Eq. ").rstrip(")")
     return short if form.shape is None else form.name
@@ -180,7 +185,7 @@ def _result_count(fitted: FittedForm) -> int:
 
 
 def _largest_result(fitted: FittedForm) -> float:
-    """Return the largest size of the first stage's results, on a grid of the shared axes."""
+    """Return the largest absolute value of the first stage's results on a grid of its axes."""
     lines = [np.linspace(a.lower, a.upper, _SAMPLED) for a in fitted.axes[: fitted.form.shared]]
     nodes = [each.ravel() for each in np.meshgrid(*lines)]
     sampled = jax.jit(jax.vmap(lambda *shared: jnp.stack(tuple(fitted.first(*shared)))))

@@ -1,7 +1,7 @@
-"""Families of forms: functions that make the forms of one kind, and what their arguments may be.
+"""Families of forms: functions that make similar forms, and what their arguments may be.
 
-A form of a family is told by the family's name and the form's `shape`, which holds the arguments;
-both are plain JSON values.
+A table identifies such a form by the family's name and the form's `shape`. The shape holds the
+arguments of the family's function as plain JSON values.
 """
 
 import reprlib
@@ -17,19 +17,20 @@ MAX_MONOMIALS = 36
 
 @dataclass(frozen=True)
 class Family:
-    """A function that makes forms, and what each of its arguments may be.
+    """A function `make` that makes forms, and the values that each of its `arguments` may have.
 
-    An argument's entry is a tuple or range of its values, 'fraction' for a number in (0, 1), or
-    'exponents' for a list of pairs of whole numbers, empty only if it is 'exponents or none'.
+    The entry of an argument is one of these: a tuple or a range with all allowed values; 'fraction'
+    for a number in (0, 1); 'exponents' for a list of different pairs of whole numbers;
+    'exponents or none' for such a list that may be empty, and does not contain (0, 0).
     """
 
     make: Callable[..., Form]
     arguments: dict[str, Any]
 
     def form(self, name: str, shape: dict[str, Any]) -> Form:
-        """Return the form with a shape; raises ValueError for one that is not allowed."""
+        """Return the form of a shape. Raises ValueError for a shape that is not allowed."""
         if set(shape) != set(self.arguments):
-            # What a file holds may be long: it is shown in part.
+            # The shape may come from a file and be long: only a part is shown.
             given = reprlib.repr(sorted(shape))
             raise ValueError(f"shape of {name!r} has {given}: allowed are {list(self.arguments)}")
         return self.make(
@@ -51,7 +52,11 @@ def _checked(name: str, value: Any, allowed: Any) -> Any:
 
 
 def _exponents(name: str, value: Any, some: bool) -> tuple[tuple[int, int], ...]:
-    """Check pairs of exponents; where none is needed, the constant is there already."""
+    """Return pairs of exponents as tuples. Raises ValueError for pairs that are not allowed.
+
+    If `some` is false, there may be none, and (0, 0) is not allowed, because the polynomial has a
+    constant already.
+    """
     given = value if isinstance(value, list | tuple) else [value]
     pairs = [tuple(pair) if isinstance(pair, list | tuple) else () for pair in given]
     good = all(

@@ -1,4 +1,4 @@
-"""A quantity, as one object: exact values, forms, shader names, and how it is drawn."""
+"""`Problem`, the object that holds all about a quantity, and the objects that it consists of."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -19,10 +19,12 @@ from quantities.family import Family
 class ExactCode:
     """A closed form that is exported as shader code, under the name exact/QUANTITY.
 
-    `functions` maps a precision ("half", "float", "double") to the functions, in the order of their
-    calls; `arguments_at` maps points (n, axes) to what they are called with. `axes` are the domain
-    whose errors are stated, `equation` and `remark` are written into the header, and so is `left`:
-    what error the code has in exact arithmetic.
+    * `axes`: the domain on which the code's error is measured and stated.
+    * `functions`: maps a precision ("half", "float" or "double") to the functions, in the order of
+      the calls.
+    * `arguments_at`: maps points (n, axes) to the arguments (n, …) of each function.
+    * `equation`, `remark`: texts for the header of the code.
+    * `left`: a text for the header, which says what error remains in exact arithmetic.
     """
 
     equation: str
@@ -42,7 +44,8 @@ class AxisHint:
     unit. Shown values are multiplied by `factor` and have the unit `unit`, such as 180/π and "°".
 
     `label` is the text at the axis, without the unit; `short_label` (None: `label`) is used where
-    there is little room. Both may contain mathtext. `logarithmic` holds for curves and maps.
+    there is little room. Both may contain Matplotlib's mathtext. If `logarithmic`, curves and maps
+    have a logarithmic axis.
     """
 
     label: str
@@ -57,10 +60,10 @@ class AxisHint:
 
     @classmethod
     def default(cls, axis: Axis) -> "AxisHint":
-        """Return the hint of an axis without one: its whole domain, angles in degrees.
+        """Return the hint for an axis that has none: its whole domain, with angles in degrees.
 
-        An infinite end is replaced by a finite one, and an end that is no part of the domain by a
-        value near it.
+        An infinite end is replaced by a finite one. An end that is not part of the domain is
+        replaced by a value near it.
         """
         lower = axis.lower if isfinite(axis.lower) else min(-1.0, 10 * axis.upper)
         upper = axis.upper if isfinite(axis.upper) else max(1.0, 10 * lower)
@@ -84,15 +87,16 @@ class AxisHint:
 
     @property
     def shown_label(self) -> str:
-        """The label with the unit of the shown values."""
+        """The label, followed by the unit of the shown values."""
         return f"{self.label} / {self.unit}" if self.unit else self.label
 
 
 @dataclass(frozen=True)
 class HemisphereHint:
-    """Two axes that are a direction, and can be drawn as a disc: the hemisphere from above.
+    """Two axes that together are a direction. They are drawn as a disc, the hemisphere from above.
 
-    `polar` and `azimuth` name the axes, in radians; `caption` says what the disc shows.
+    `polar` and `azimuth` are the names of the axes, which are in radians. `caption` is the text
+    below the disc.
     """
 
     polar: str
@@ -104,9 +108,10 @@ class HemisphereHint:
 class AverageHint:
     """The exact value as a weighted sum over another quantity, for the report's explorer.
 
-    The explorer needs an expression, which a quantity without closed form does not have. The
-    `integrand` has one, and has the same first axes. For each of its further axes `rules` has nodes
-    and weights, which are multiplied.
+    The explorer runs in a browser and needs a formula. A quantity without a closed form has none,
+    but it may be an average of the `integrand`, a quantity that has one. The first axes of the
+    integrand are those of the quantity. For each of its other axes `rules` has nodes and weights.
+    The weight of a point is the product of its weights.
     """
 
     integrand: "Problem"
@@ -118,14 +123,17 @@ class PlotHints:
     """How a quantity is drawn.
 
     * `axes` has a hint for each axis, by name; an axis without one gets `AxisHint.default`.
-    * `values` is the range of the quantity that is drawn; None stands for that of its exact values.
-      `value_label` is its label and `exact_label` the legend of its exact values, with mathtext.
-    * The colours of maps end at an error of ±`largest_error`.
+    * `values` is the range of values that is drawn; None stands for the range of the exact values.
+      `value_label` is its label and `exact_label` the legend of the exact values. Both may contain
+      mathtext.
+    * The colour scale of error maps goes from −`largest_error` to `largest_error`.
     * Surfaces are seen from `azimuth`, in degrees, and have `surface_nodes` points an axis. Maps of
       errors have `map_nodes` points an axis.
-    * `cost_label` says what the operations of a form are counted for.
-    * `against` names the axis that the explorer first draws curves against (None: the last one).
-    * `hemisphere` and `average` are for quantities that have a direction, or are a sum.
+    * `cost_label` is the label of an axis with the operations of forms.
+    * `against` is the name of the axis that the explorer draws curves against at first; None stands
+      for the last one.
+    * `hemisphere` is for a quantity with a direction among its axes, `average` for one that is an
+      average of another.
     """
 
     axes: Mapping[str, AxisHint] = field(default_factory=dict)
@@ -142,23 +150,27 @@ class PlotHints:
     average: AverageHint | None = None
 
     def axis(self, axis: Axis) -> AxisHint:
-        """Return the hint of an axis."""
+        """Return the hint of an axis, or its default hint if it has none."""
         return self.axes.get(axis.name) or AxisHint.default(axis)
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A quantity: its exact values, the forms that stand for it, and how it is called and drawn.
+    """A quantity: its exact values, the forms that approximate it, and how it is called and drawn.
 
     * `reference`: the exact values and the axes.
-    * `default`: the form that `refit NAME` fits; `forms`: all forms by name that are no family's.
-    * `families`: families of forms by name; `candidates` maps lower ends of axes, such as
-      {"alpha": 0.15}, to the forms that a search tries.
-    * `calling`: names, arguments and clamps of the exported functions.
-    * `closed_form`: the exact value as a function of the axes that can be exported, in float64;
-      `exact_code`: the same as shader code, where it is of use there.
-    * `topic`: the folder of the packaged tables. `searches_best`: a search begins with the forms of
-      the best tables, because not all of them are among the candidates.
+    * `default`: the form that `shadefit refit NAME` fits.
+    * `calling`: the names, arguments and clamps of the exported functions.
+    * `forms`: the further forms that belong to no family. `families`: the families, by name.
+    * `candidates`: returns the forms that a search tries. Its argument maps the names of axes to
+      the lower ends of their domains, such as {"alpha": 0.15}. None: `default` and `forms`.
+    * `closed_form`: the exact value in float64, as a function of the axes that can be traced; the
+      report's explorer evaluates it. `exact_code`: the same for shaders.
+    * `plot`: how the quantity is drawn; None stands for default hints.
+    * `topic`: the folder below `coefficients/tables` that has the tables of the quantity; a user's
+      quantity has none.
+    * `searches_best`: whether a search begins with the forms of the best tables. This is for a
+      quantity whose candidates do not contain all of these.
     """
 
     reference: Reference
@@ -169,7 +181,6 @@ class Problem:
     candidates: Callable[[Mapping[str, float]], Iterator[Form]] | None = None
     closed_form: Callable[..., Array] | None = None
     exact_code: ExactCode | None = None
-    codomain: tuple[float, float] = (0.0, 1.0)
     plot: PlotHints | None = None
     topic: str = ""
     searches_best: bool = False
@@ -191,18 +202,25 @@ class Problem:
 
     @property
     def description(self) -> str:
-        """The symbol and the meaning of the quantity, in one line."""
+        """The symbol and the meaning of the quantity, as one line of text."""
         return f"{self.symbol}, {self.reference.meaning}"
 
     @property
     def single_forms(self) -> dict[str, Form]:
-        """The forms that are no family's, by name, the default one first."""
+        """The forms that belong to no family, by name; the default one comes first."""
         return {form.name: form for form in (self.default, *self.forms)}
 
-    def form(self, name: str, shape: dict[str, Any] | None) -> Form:
-        """Return a form by name, and by shape if it is a family's.
+    def tried(self, lower: Mapping[str, float]) -> Iterator[Form]:
+        """Yield the forms that a search tries."""
+        if self.candidates is not None:
+            return self.candidates(lower)
+        return iter(self.single_forms.values())
 
-        Raises ValueError for a form that is not known, and for a shape that is not allowed.
+    def form(self, name: str, shape: dict[str, Any] | None) -> Form:
+        """Return the form with a name, or the form with a shape from the family with that name.
+
+        `shape` is None for a form that belongs to no family. Raises ValueError for a name that is
+        not known, and for a shape that is not allowed.
         """
         if shape is None and name in self.single_forms:
             return self.single_forms[name]

@@ -1,4 +1,4 @@
-"""The quantities that are known, by name; a quantity comes in by `register`."""
+"""The known quantities, by name. `register` adds a user's quantity while the program runs."""
 
 from quantities.fuzz import PS, VELVET, G, Q, R
 from quantities.problem import Problem
@@ -12,14 +12,14 @@ def problems() -> dict[str, Problem]:
 
 
 def problem(name: str) -> Problem:
-    """Return a quantity; raises ValueError for a name that none has."""
+    """Return the quantity with a name. Raises ValueError if there is none."""
     if name not in _PROBLEMS:
         raise ValueError(f"no quantity is called {name!r}: allowed are {', '.join(_PROBLEMS)}")
     return _PROBLEMS[name]
 
 
 def register(new: Problem) -> Problem:
-    """Add a quantity; raises ValueError for a name that another one has."""
+    """Add a quantity and return it. Raises ValueError if another quantity has its name."""
     if new.name in _PROBLEMS and _PROBLEMS[new.name] is not new:
         raise ValueError(f"a quantity is called {new.name!r} already: allowed is another name")
     _PROBLEMS[new.name] = new
@@ -27,5 +27,5 @@ def register(new: Problem) -> Problem:
 
 
 def unregister(name: str) -> None:
-    """Remove a quantity, if it is there."""
+    """Remove the quantity with a name, if there is one."""
     _PROBLEMS.pop(name, None)

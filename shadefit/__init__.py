@@ -1,17 +1,19 @@
 """shadefit: exact shading integrals, certified curve fits, and shader code that has been run.
 
-`import shadefit` is all that a program needs. The names below are imported when they are first
-used, so that the import itself does not wait for JAX. Float64 must be on before anything is
+A program needs no other import than `import shadefit`. The names below are imported when they are
+first used, so that the import itself does not wait for JAX. Turn float64 on before anything is
 evaluated: `jax.config.update("jax_enable_x64", True)`.
 
-* Exact values: `PS`, `G`, `Q`, `R`, `VELVET` are the references of the fuzz BRDF; `Reference`,
-  `Axis`, `Sampling`, `Estimate` and `leg` make others.
-* Fits: `fit` finds the coefficients of a `Form` for a `Goal` and returns a `Fit`; `plain_form`
+* Exact values: `PS`, `G`, `Q`, `R` and `VELVET` are the references of the fuzz BRDF. `Reference`,
+  `Axis`, `Sampling`, `Estimate` and `leg` are for references of one's own.
+* Fits: `fit` finds the coefficients of a `Form` for a `Goal`, and returns a `Fit`. `plain_form`
   makes a form of a plain function.
-* Quantities: `problem(name)`, `problems()`, `register(problem)`; `Problem`, `CallingConvention`,
-  `Argument`, `PlotHints`, `AxisHint`.
-* Tables: `load(name)` returns the fitted form of a table; `resolve(name)` all that is known of it.
-* Code: `write_source`, `function`, `Parameter`, `LANGUAGES`, `source_file`.
+* Quantities: `problem(name)`, `problems()` and `register(problem)`. A `Problem` is made with
+  `CallingConvention`, `Argument`, `PlotHints` and `AxisHint`.
+* Tables: `load(name)` returns the fitted form of a table, `resolve(name)` an `Entry` with the table
+  and its quantity. `table_of(fit, command)` makes a `Table` of a fit.
+* Code: `source_file` returns the shader code of an entry, and `exported_values` what it computes.
+  `write_source` returns the code of any `function` with `Parameter`s, in one of the `LANGUAGES`.
 """
 
 from importlib import import_module

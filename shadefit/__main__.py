@@ -1,21 +1,22 @@
-"""Where the command line starts: an interruption ends it at once, whatever is being computed."""
+"""The start of the command line. An interruption (Ctrl-C) ends it at once, even within JAX."""
 
 import os
 import signal
 import sys
 import threading
 
-# 128 + SIGINT, as shells have it.
+# The exit status of an interrupted command in shells: 128 + SIGINT.
 _INTERRUPTED = 130
-# What an interruption leaves, where it is more than whole files or none.
+# By command: a message about the files that an interruption leaves, if there are partial results.
 _KEPT = {"search": "what it finished is in its folder, and the same command goes on from there"}
 _SHOW_CURSOR = "\x1b[?25h\r\x1b[K"
 
 
 def main() -> None:
-    """Run the command line; exit status 2 for bad input, 130 for an interruption."""
-    # Python would raise in the midst of compiled code, where the exception is lost or fatal, or
-    # wait for minutes until that ends. The byte is written at once, and read by another thread.
+    """Run the command line. The exit status is 2 for bad input and 130 for an interruption."""
+    # Without this, Python raises KeyboardInterrupt only after compiled code returns, which may take
+    # minutes, or in the middle of JAX, where the exception is lost or crashes. Instead, Python's
+    # signal handler writes a byte into a pipe at once, and another thread waits for it.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         reader, writer = os.pipe()
         os.set_blocking(writer, False)

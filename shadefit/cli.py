@@ -1,5 +1,7 @@
-"""The command line `shadefit`: its commands are in `shadefit.commands`."""
+"""The command line `shadefit`, which consists of the commands in `shadefit.commands`."""
 
+import functools
+import inspect
 import os
 import sys
 from collections.abc import Callable
@@ -37,7 +39,40 @@ def _print_version(wanted: bool | None) -> None:
 
 
 def _add(name: str, command: Callable, examples: str, **options) -> None:
-    app.command(name, epilog=examples, **options)(command)
+    app.command(name, epilog=examples, **options)(_with_problem_files(command))
+
+
+def _with_problem_files(command: Callable) -> Callable:
+    """Give a command the option -p, which loads a user's quantities before the command runs."""
+
+    @functools.wraps(command)
+    def run(*arguments, problem: list[str] | None = None, **options):
+        if problem:
+            from quantities.loader import load_problems  # noqa: PLC0415
+
+            for each in problem:
+                load_problems(each)
+        return command(*arguments, **options)
+
+    signature = inspect.signature(command)
+    option = inspect.Parameter("problem", inspect.Parameter.KEYWORD_ONLY, default=None)
+    option = option.replace(annotation=_ProblemFiles)
+    parameters = [*signature.parameters.values(), option]
+    # Typer reads a command's options from these two.
+    vars(run)["__signature__"] = signature.replace(parameters=parameters)
+    run.__annotations__ = {**command.__annotations__, "problem": _ProblemFiles}
+    return run
+
+
+_ProblemFiles = Annotated[
+    list[str] | None,
+    typer.Option(
+        "-p",
+        "--problem",
+        help="Python file that declares quantities, FILE.py[:NAME]; it is run. May be given again.",
+        metavar="FILE",
+    ),
+]
 
 
 _add(
@@ -88,10 +123,10 @@ def _global(
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line; exit status 2 with one line on standard error for bad input."""
-    # Whatever the environment says: the references refuse to run without.
+    """Run the command line. Bad input gives one line on standard error and exit status 2."""
+    # The references need float64. A setting of the environment is overwritten.
     os.environ["JAX_ENABLE_X64"] = "1"
-    # One thread: more would change the order of sums, and so the last digits, with the machine.
+    # With more threads, the order of sums, and so their last digits, would depend on the machine.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     given = sys.argv[1:] if arguments is None else arguments
     try:
@@ -100,14 +135,22 @@ def main(arguments: list[str] | None = None) -> None:
         message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
         _fail(message, 2)
     except BrokenPipeError:
-        # The reader of our output has gone: not an error, but Python would complain at exit.
+        # The program that reads the output has ended. This is not an error, but Python would print
+        # a message at exit if the output were not redirected.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(0)
+    except Exception as error:
+        loader = sys.modules.get("quantities.loader")
+        if loader is None or not isinstance(error, loader.ProblemFileError):
+            raise
+        # The user's own traceback, as it is.
+        print(error, file=sys.stderr)
+        sys.exit(2)
     sys.exit(status or 0)
 
 
 def _fail(message: str, status: int) -> None:
-    # Typer leaves in what its validator calls the kind of an error.
+    # Typer puts the kind of an error into its message; it does not help the user.
     words = message.replace(": Value error, ", ": ").split()
     print(f"shadefit: {' '.join(words)}", file=sys.stderr)
     sys.exit(status)

@@ -1,19 +1,20 @@
-"""What a shell may complete: names of quantities, tables, shaders and languages.
+"""Completion in the shell: names of quantities, tables, closed forms and languages.
 
-The names are read from the tables' files and from the table below, and tests hold that table to the
-registry: the registry imports JAX, for which every press of the tab key would wait.
+The names come from the names of the tables' files and from the two lists below. They do not come
+from the registry, because it imports JAX, and every press of the tab key would wait for that. Tests
+compare the lists with the registry.
 """
 
 from pathlib import Path
 
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
-# The quantities in the order of the registry, and those of them that have an exported closed form.
+# The quantities in the order of the registry, and the closed forms that can be exported.
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 
 
 def complete_quantity(incomplete: str) -> list[str]:
-    """Complete what can be refitted."""
+    """Complete the name of a quantity, or 'all'."""
     return [name for name in (*QUANTITIES, "all") if name.startswith(incomplete)]
 
 
@@ -28,13 +29,13 @@ def complete_table(incomplete: str) -> list[str]:
 
 
 def complete_shader(incomplete: str) -> list[str]:
-    """Complete what can be exported as code."""
+    """Complete the name of a table or of a closed form, which can be exported as code."""
     exact = [name for name in EXACT if name.startswith(incomplete)]
     return [*complete_table(incomplete), *exact]
 
 
 def complete_language(incomplete: str) -> list[str]:
-    """Complete a language."""
+    """Complete the key of a language."""
     from programs.languages import LANGUAGES
 
     return [key for key in LANGUAGES if key.startswith(incomplete)]

@@ -13,19 +13,19 @@ from rich.table import Table as Grid
 
 
 def print_json(value: Any) -> None:
-    """Print one JSON object; floats round-trip."""
+    """Print one JSON object. Numbers have all digits that are needed to read them back exactly."""
     print(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def print_table(title: str, columns: list[str], rows: list[list[str]], note: str = "") -> None:
-    """Print a table; the first column is left-aligned, the others right-aligned."""
+    """Print a table with a note below it. The first column is left-aligned, the others right."""
     grid = Grid(title=title, title_justify="left", box=SIMPLE_HEAD, caption=note or None)
     grid.caption_justify = "left"
     for index, column in enumerate(columns):
         grid.add_column(column, justify="left" if index == 0 else "right", no_wrap=True)
     for row in rows:
         grid.add_row(*row)
-    # A pipe has no width: then the table takes what it needs.
+    # If the output is no terminal, there is no width to fit into: the table gets enough.
     width = None if sys.stdout.isatty() else 200
     Console(highlight=False, markup=False, width=width).print(grid)
 
@@ -37,7 +37,7 @@ def place(where: dict[str, float]) -> str:
 
 @contextmanager
 def stages() -> Generator[Progress]:
-    """Show what a long command is doing, on standard error, only when that is a terminal."""
+    """Show on standard error what a long command is doing. Show nothing if it is no terminal."""
     console = Console(stderr=True)
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(

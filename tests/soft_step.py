@@ -4,7 +4,7 @@ import jax.numpy as jnp
 
 import shadefit as sf
 
-AXES = (sf.Axis("x", "x", "1", 0.0, 4.0, "argument"), sf.Axis("y", "y", "1", 0.5, 1.0, "scale"))
+AXES = (sf.Axis("x", 0.0, 4.0, meaning="argument"), sf.Axis("y", 0.5, 1.0, meaning="scale"))
 
 
 @sf.leg(*AXES)
@@ -40,7 +40,6 @@ PROBLEM = sf.Problem(
     reference=SOFT,
     default=FORMS[1],
     forms=FORMS[:1],
-    candidates=lambda _: iter(FORMS),
     calling=sf.CallingConvention(
         name="SoftStep",
         summary="S ({equation}); clamps to the domain.",

@@ -1,1 +1,1 @@
-"""Where forms are fitted, checked and judged."""
+"""The points at which forms are fitted, checked for large errors, and judged."""

@@ -1,4 +1,4 @@
-"""Where forms are judged: the domain of one, or what the domains of several have in common."""
+"""Domains in which forms are judged: of one form, or the common part of several."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,16 +9,16 @@ from integrals.reference import Axis, Reference
 
 @dataclass(frozen=True)
 class Domain:
-    """A quantity's exact values, and the part of its axes that is looked at."""
+    """The exact values of a quantity, with its axes restricted to the part that is judged."""
 
     reference: Reference
     axes: tuple[Axis, ...]
 
 
 def common_domain(forms: Sequence[Form | Domain]) -> Domain:
-    """Return the part of the axes that all forms (or domains) of one quantity have in common.
+    """Return the part of the axes that all forms or domains of one quantity have in common.
 
-    Raises ValueError where there is none.
+    Raises ValueError if there is no common part.
     """
     sides = zip(*(form.axes for form in forms), strict=True)
     return Domain(forms[0].reference, tuple(map(_common, sides)))

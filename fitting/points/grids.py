@@ -1,4 +1,4 @@
-"""Tensor grids with weights, where forms are fitted, and low-discrepancy points off every grid."""
+"""Tensor grids with weights, on which forms are fitted, and Sobol' points."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from integrals.reference import Axis
 
 @dataclass(frozen=True)
 class Grid:
-    """The tensor product of `nodes`, one array an axis; `weights` (points,) sum to one."""
+    """A tensor grid. `nodes` has one array for each axis; `weights` (points,) sum to one."""
 
     axes: tuple[Axis, ...]
     nodes: tuple[np.ndarray, ...]
@@ -20,7 +20,7 @@ class Grid:
 
     @property
     def points(self) -> np.ndarray:
-        """All points (points, axes), the last axis running fastest."""
+        """All points (points, axes); the last axis changes fastest."""
         mesh = np.meshgrid(*self.nodes, indexing="ij")
         return np.stack([each.ravel() for each in mesh], axis=1)
 
@@ -29,7 +29,10 @@ MakeGrid = Callable[[tuple[Axis, ...], int], Grid]
 
 
 def trapezoid_grid(axes: tuple[Axis, ...], count: int) -> Grid:
-    """Return `count` uniform nodes an axis, ends included, with the trapezoid rule's weights."""
+    """Return a grid of `count` equidistant nodes an axis, ends included.
+
+    The weights are those of the trapezoid rule.
+    """
     line = np.full(count, 1 / (count - 1))
     line[[0, -1]] /= 2
     nodes = tuple(np.linspace(axis.lower, axis.upper, count) for axis in axes)
@@ -37,7 +40,10 @@ def trapezoid_grid(axes: tuple[Axis, ...], count: int) -> Grid:
 
 
 def gauss_grid(axes: tuple[Axis, ...], count: int) -> Grid:
-    """Return `count` Gauss–Legendre nodes an axis: weighted sums are means over the domain."""
+    """Return a grid of `count` Gauss–Legendre nodes an axis, with the weights of the rule.
+
+    A weighted sum over the grid approximates the mean over the domain.
+    """
     x, w = np.polynomial.legendre.leggauss(count)
     nodes = tuple(
         axis.lower + (axis.upper - axis.lower) * np.clip((x + 1) / 2, 0, 1) for axis in axes
@@ -53,8 +59,8 @@ def sobol_points(axes: tuple[Axis, ...], exponent: int, seed: int) -> np.ndarray
 
 
 def unit_points(count: int, exponent: int, seed: int) -> np.ndarray:
-    """Return 2^exponent scrambled Sobol' points (points, count) of the unit cube."""
-    from scipy.stats import qmc  # noqa: PLC0415  it takes a second to import
+    """Return 2^exponent scrambled Sobol' points (points, count) in the unit cube."""
+    from scipy.stats import qmc  # noqa: PLC0415  its import takes a second
 
     return qmc.Sobol(count, rng=np.random.default_rng(seed)).random_base2(exponent)
 

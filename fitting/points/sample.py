@@ -1,4 +1,4 @@
-"""The scattered points that a form is fitted to a goal on, with exact values and weights."""
+"""The scattered points on which a form is fitted to a goal, with exact values and weights."""
 
 import functools
 from dataclasses import dataclass
@@ -15,9 +15,10 @@ SEED = 20200819
 
 @dataclass(frozen=True)
 class Sample:
-    """Points (n, axes), exact values (n,), a bound on the error of these, and `scale` (n,).
+    """Points (n, axes) with their exact values (n,).
 
-    Errors are multiplied by `scale` before they are made small.
+    `error` is a bound on the error of the exact values. The errors of a form are multiplied by
+    `scale` (n,) before a fit minimises them.
     """
 
     points: np.ndarray
@@ -36,14 +37,14 @@ class Sample:
 
 
 def sample_of(form: Form, goal: Goal = LEAST_SQUARES, measure: str = "uniform") -> Sample:
-    """Return the sample that a form is fitted on; `measure` names a measure of the quantity."""
+    """Return the sample on which a form is fitted; `measure` names a measure of the quantity."""
     reference = form.reference
     points = scattered_points(reference, form.axes, reference.sampling.fitted, SEED)
     return _sample(points, _estimates(reference, form.axes), form, goal, measure)
 
 
 def sample_at(points: np.ndarray, form: Form, goal: Goal, measure: str) -> Sample:
-    """Return a sample of the same fit at other points (n, axes)."""
+    """Return the sample of a fit at given points (n, axes)."""
     return _sample(points, form.reference.estimates(points), form, goal, measure)
 
 
@@ -55,10 +56,11 @@ def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, measure: 
 def scale_at(
     points: np.ndarray, exact: np.ndarray, form: Form, goal: Goal, measure: str
 ) -> np.ndarray:
-    """Return what errors (n,) are multiplied by.
+    """Return the numbers (n,) that the errors are multiplied by before they are minimised.
 
-    A relative error takes 1/|f|. A measure of the quantity multiplies squared errors by its
-    density, and the largest error by its own factor.
+    Each is the product of two factors. The first is 1/|exact| if the goal is relative, and 1
+    otherwise. The second comes from the measure: the square root of its `density` for least
+    squares, and its `largest` for the largest error.
     """
     chosen = form.reference.sampling.measures[measure]
     scale = 1 / np.abs(exact) if goal.relative else np.ones(len(exact))

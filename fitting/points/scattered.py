@@ -1,6 +1,6 @@
 """Points inside a domain, on its boundary, and where the quantity is steep, with exact values.
 
-A largest error is as often on the boundary of a domain as inside it.
+Points on the boundary are needed because the largest error is often there.
 """
 
 import functools
@@ -20,9 +20,10 @@ _STRETCH = 1.25
 def scattered_points(
     reference: Reference, axes: tuple[Axis, ...], exponent: int, seed: int
 ) -> np.ndarray:
-    """Return 2^exponent points (n, axes) inside a domain, and half as many more, some on its faces.
+    """Return 2^exponent points inside a domain, and half as many more, some of them on its faces.
 
-    They are spread along each axis by its scale. The quantity's `sampling.extra` adds further ones.
+    The points (n, axes) are distributed along each axis as its `scale` says. The quantity's
+    `sampling.extra` adds further points, if it has any.
     """
     lower, upper = box_of(axes).T
     width = upper - lower
@@ -35,15 +36,15 @@ def scattered_points(
 
 
 def judging_points(domain: Form | Domain) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points (n, axes) that judge a form's rms error, and the exact values (n,).
+    """Return the points (n, axes) at which a form's rms error is measured, and the exact values.
 
-    They are uniform in the domain, and no fit sees them.
+    The points are uniform in the domain, and no fit uses them. The values are (n,).
     """
     return _judging(domain.reference, domain.axes)
 
 
 def checking_points(domain: Form | Domain, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return scattered points (n, axes) where the largest error is looked for, and exact values."""
+    """Return the scattered points (n, axes) at which large errors are sought, and exact values."""
     return _checking(domain.reference, domain.axes, seed)
 
 

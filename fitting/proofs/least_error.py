@@ -1,4 +1,4 @@
-"""A largest error that no coefficients of a form go below."""
+"""A lower bound of the largest error that any coefficients of a form can have."""
 
 import numpy as np
 from scipy.optimize import linprog
@@ -7,8 +7,9 @@ from fitting.form import Form
 from fitting.linearity import linear_parts
 from fitting.solvers.minimax import largest_of
 
-# The bound is sought at these parts of the error that was found, on this many of the points.
+# The bound is tried at these fractions of the largest error that was found, the highest first.
 LEVELS = (0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)
+# The linear program uses this many points with the largest errors, and about as many evenly chosen.
 ROWS = 500
 _INFEASIBLE = 2  # linprog's status
 
@@ -16,11 +17,13 @@ _INFEASIBLE = 2  # linprog's status
 def least_error(
     form: Form, points: np.ndarray, exact: np.ndarray, errors: np.ndarray
 ) -> float | None:
-    """Return a lower bound of the largest error of a form for any coefficients; None: unknown.
+    """Return a lower bound of the largest error that any coefficients of a form can have.
 
-    `errors` (n,) are those of the coefficients that were found, at `points` (n, axes) with values
-    `exact` (n,). For a quotient N/D of linear functions with D > 0, |N − f·D| ≤ t·D is linear in
-    the coefficients: a t that no coefficients satisfy at some of the points is a bound.
+    `errors` (n,) are those of the fit, at `points` (n, axes) with the exact values `exact` (n,). If
+    the form is a quotient N/D of linear functions with D > 0, its error is at most t where
+    |N − exact·D| ≤ t·D, which is linear in the coefficients. If a linear program shows that no
+    coefficients satisfy this at some of the points, t is a lower bound. Returns None if no bound is
+    found, or if the form is no such quotient.
     """
     if not (form.has_least_error and form.size):
         return None

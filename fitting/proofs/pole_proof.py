@@ -1,4 +1,4 @@
-"""Proof that a form has no pole and no NaN on its whole domain, not only at samples of it."""
+"""The proof that a form has no pole and no NaN anywhere on its domain, between samples too."""
 
 import numpy as np
 
@@ -8,15 +8,16 @@ from programs.bounding.denominators import DenominatorBound, prove_no_pole
 
 
 def proof_axes(form: Form) -> tuple[Axis, ...]:
-    """Return the axes that proofs about a form are made over."""
+    """Return the axes of the domain that proofs about a form are made on."""
     return form.axes if form.proofs.axes is None else form.proofs.axes
 
 
 def certify_denominators(fitted: FittedForm, enough: float = np.inf) -> DenominatorBound:
-    """Bound every divisor in a form's expression from below, over the form's whole domain.
+    """Bound every divisor of a form from below by a positive number, on the form's whole domain.
 
-    Radicands are shown not to be negative, and arguments of logarithms to be positive. A bound of
-    `enough` is not improved upon. Raises ValueError for an operation that has no interval version.
+    Radicands are also proven not to be negative, and arguments of logarithms to be positive. The
+    bound of a divisor is not improved once it reaches `enough`. Raises ValueError for an operation
+    that has no interval version.
     """
     form, axes, constants = fitted.form, proof_axes(fitted.form), fitted.constants
     value = form if form.proofs.value is None else form.proofs.value

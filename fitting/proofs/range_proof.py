@@ -1,4 +1,4 @@
-"""Proof that a form's values are between 0 and 1, as those of the fraction it stands for."""
+"""The proof that a form's values are in the codomain of the quantity: [0, 1] for a fraction."""
 
 import numpy as np
 
@@ -9,35 +9,39 @@ from integrals.reference import box_of
 from programs.bounding.branch_and_bound import Bounds, BranchAndBound
 from programs.bounding.denominators import NOWHERE_NEGATIVE, within
 
-# Bounds are within this of values that are attained.
+# The bounds are at most this far from values that the form attains.
 TIGHTNESS = 1e-3
-# Every step is rounded outwards: a form that attains 1 has a bound slightly above 1.
+# Interval arithmetic rounds outwards in every step, so that the bound of a form that attains an end
+# of the codomain is slightly outside. This part of the codomain's width is accepted.
 ROUNDING = 1e-12
-FRACTIONS = (-ROUNDING, 1 + ROUNDING)
-# The base-2 logarithm of how many points are tried first: a form that leaves [0, 1] often does so
-# at one of them, and then no proof is attempted.
+# The form is first evaluated at 2^PROBES points and half as many near the boundary. If a value is
+# outside the codomain, no proof is attempted.
 PROBES = 12
 
 
 def certify_range(fitted: FittedForm, tightness: float = TIGHTNESS) -> Bounds | None:
-    """Prove that all values of a form lie between 0 and 1; None where that is not shown.
+    """Return proven bounds of a form's values within the codomain; None if there is no such proof.
 
-    If the form declares margins, these are shown not to be negative, and the bounds are 0 and 1.
-    Otherwise the values are bounded, to within `tightness` of what is attained. The denominators
-    of the form must be certified before.
+    If the form has margins (`Proofs.margins`), they are proven not to be negative, and the bounds
+    are the ends of the codomain. Otherwise the values are bounded by branch and bound, to within
+    `tightness` of the values that the form attains. Call `certify_denominators` before: this proof
+    relies on it.
     """
     form, constants = fitted.form, fitted.constants
     if form.proofs.margins is not None:
         return _by_margins(fitted)
     points = scattered_points(form.reference, form.axes, PROBES, PROBES)
 
+    lower, upper = form.reference.codomain
+    allowed = lower - ROUNDING * (upper - lower), upper + ROUNDING * (upper - lower)
+
     def settled(below, above, least, most):
-        low, high = max(FRACTIONS[0], least - tightness), min(FRACTIONS[1], most + tightness)
+        low, high = max(allowed[0], least - tightness), min(allowed[1], most + tightness)
         return (below >= low) & (above <= high)
 
     program = traced(fitted, lambda *point: form(constants, *point), form.axes)
     solver = BranchAndBound(first_split=form.proofs.first_split)
-    found = solver.bound_output(program, box_of(form.axes), FRACTIONS, settled, points)
+    found = solver.bound_output(program, box_of(form.axes), allowed, settled, points)
     return found if np.isfinite(found.lower) else None
 
 
@@ -54,4 +58,4 @@ def _by_margins(fitted: FittedForm) -> Bounds | None:
         if not np.isfinite(found.lower):
             return None
         boxes += found.boxes
-    return Bounds(0.0, 1.0, boxes)
+    return Bounds(*fitted.reference.codomain, boxes)

@@ -1,1 +1,1 @@
-"""Generic shapes of forms."""
+"""Formulas that forms of several quantities share: polynomials, poles, quotients, surfaces."""

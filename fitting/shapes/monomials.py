@@ -1,13 +1,18 @@
-"""Polynomials in a chosen set of monomials zⁱyʲ of two variables, by Horner's rule."""
+"""Polynomials of two variables that have only some of the monomials zⁱyʲ, by Horner's rule."""
 
 from collections.abc import Mapping
 from typing import Any
 
+# The exponents (i, j) of monomials zⁱyʲ.
 Exponents = tuple[tuple[int, int], ...]
 
 
 def horner(coefficients: Mapping[tuple[int, int], Any], z: Any, y: Any) -> Any:
-    """Return Σ cᵢⱼ zⁱ yʲ by Horner's rule in z, whose coefficients are evaluated by it in y."""
+    """Return Σ cᵢⱼ zⁱ yʲ for `coefficients` that map (i, j) to cᵢⱼ.
+
+    Horner's rule is applied to z. Each power of z has a polynomial in y as its coefficient, to
+    which the rule is applied too.
+    """
     total = None
     for i in range(max(i for i, _ in coefficients), -1, -1):
         row = {j: c for (k, j), c in coefficients.items() if k == i}

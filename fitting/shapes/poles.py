@@ -1,4 +1,4 @@
-"""A polynomial and simple poles in one variable."""
+"""The sum of a polynomial and simple poles in one variable."""
 
 import functools
 
@@ -10,7 +10,7 @@ from jax import Array
 def poles_value(coefficients, terms: int, poles: int, x: Array) -> Array:
     """Return Σ cₖxᵏ + Σ aₖ/(bₖ + x).
 
-    `coefficients` holds those of the polynomial, `terms` of them, then aₖ, bₖ of each pole.
+    `coefficients` holds the `terms` coefficients cₖ, then aₖ and bₖ of each of the `poles`.
     """
     c = coefficients
     parts = [c[terms + 2 * k] / (c[terms + 2 * k + 1] + x) for k in range(poles)]
@@ -23,20 +23,23 @@ def poles_value(coefficients, terms: int, poles: int, x: Array) -> Array:
 
 
 def least_offset(coefficients, terms: int, poles: int) -> Array:
-    """Return the least of the poles' offsets bₖ and 1: how far poles are from x ≥ 0."""
+    """Return the least of all bₖ and 1. If it is positive, no pole x = −bₖ is at x ≥ 0."""
     offsets = [coefficients[terms + 2 * k + 1] for k in range(poles)]
     return functools.reduce(jnp.minimum, offsets, jnp.ones(()))
 
 
 def pole_names(terms: int, poles: int) -> list[str]:
-    """Name the coefficients by what they multiply, or by the pole that they belong to."""
+    """Name the coefficients: 'c1: x' by the power that it multiplies, 'a1' and 'b1' by the pole."""
     inner = ["1", *(f"x{_superscript(k)}" for k in range(1, terms))][:terms]
     numbered = [f"c{k}: {name}" for k, name in enumerate(inner)]
     return numbered + [f"{letter}{k + 1}" for k in range(poles) for letter in "ab"]
 
 
 def pole_starts(terms: int, poles: int) -> tuple[np.ndarray, ...]:
-    """Return starts: no polynomial, and poles at several distances from x = 0."""
+    """Return starts of a fit: the polynomial is zero, and the poles are at several distances.
+
+    The distances are those from x = 0. Without poles there is one start, zero.
+    """
     distances = ([0.9, 0.1, 0.01, 0.001], [0.5, 0.2, 0.05, 0.02], [3.0, 0.8, 0.2, 0.05])
     starts = [
         np.concatenate([np.zeros(terms), *([0.0, b] for b in each[:poles])]) for each in distances

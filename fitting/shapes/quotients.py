@@ -11,11 +11,14 @@ from jax import Array
 
 @dataclass(frozen=True, eq=False)
 class Quotients:
-    """One quotient (coefficients (k,)), or several rows of one shape (coefficients (rows, k)).
+    """One quotient with coefficients (k,), or several of one shape with coefficients (rows, k).
 
-    `features` maps a point to x (m,), `factor` to the number before the quotient. The denominator
-    takes the first `below` features. A row holds t, p₁ … pₘ, q₁ … q_below. `offset` is a number,
-    or one for each row.
+    * `features`: maps a point to x (m,). The numerator takes all `above` = m features; the
+      denominator takes the first `below` of them, which are y.
+    * `factor`: maps a point to the number before the quotient.
+    * `offset`: a number for one quotient, or a tuple with a number for each row.
+
+    A row of the coefficients holds t, then p₁ … pₘ, then q₁ … q_below.
     """
 
     features: Callable[..., Array]
@@ -37,12 +40,12 @@ class Quotients:
         return jnp.array(self.offset) + factor * numerator / denominator
 
     def positive(self, coefficients: Array | np.ndarray, *point) -> Array:
-        """Return the denominator, or the least of the rows' denominators, at one point."""
+        """Return the denominator at one point, or the least of the rows' denominators."""
         y = self.features(*point)[: self.below]
         return jnp.min(1 + jnp.asarray(coefficients)[..., self.above + 1 :] @ y)
 
     def columns(self, points: Array) -> tuple[Array, Array, Array]:
-        """Return (1, x), y and the factor at points (n, axes)."""
+        """Return (1, x) (n, 1 + m), y (n, below) and the factor (n,) at points (n, axes)."""
         x = jax.vmap(lambda point: self.features(*point))(points)
         factor = jax.vmap(lambda point: self.factor(*point))(points)
         return jnp.concatenate([jnp.ones((len(x), 1)), x], axis=1), x[:, : self.below], factor

@@ -1,4 +1,4 @@
-"""Polynomials of a total degree in two variables, several at a time."""
+"""Surfaces: polynomials of two variables with all monomials up to a total degree."""
 
 import functools
 
@@ -8,7 +8,10 @@ from jax import Array
 
 
 def surface_values(coefficients, count: int, degree: int, x, y) -> list[Array]:
-    """Return `count` polynomials of a total degree in x and y, their coefficients in a row."""
+    """Return the values of `count` surfaces at x and y.
+
+    `coefficients` is flat: those of the first surface, then those of the second, and so on.
+    """
     powers = _powers(degree)
     size = len(powers)
     return [
@@ -26,15 +29,16 @@ def surface_values(coefficients, count: int, degree: int, x, y) -> list[Array]:
 
 
 def surface_names(surfaces: list[str], degree: int, x: str, y: str) -> list[str]:
-    """Name the coefficients of surfaces by surface and monomial of the variables' symbols."""
+    """Name each coefficient of surfaces by its surface and monomial, such as 'u0: α^1 y^2'."""
     return [f"{name}: {x}^{i} {y}^{j}" for name in surfaces for i, j in _powers(degree)]
 
 
 def flat_start(
     values: list[float], degree: int, slopes: dict[int, tuple[float, float]] | None = None
 ) -> np.ndarray:
-    """Return coefficients of constant surfaces; `slopes` gives some of them slopes by x and y.
+    """Return the coefficients of surfaces that have the constant `values`.
 
+    `slopes` maps the numbers of some surfaces to their slopes in x and in y, which are added.
     Surfaces of degree 0 have no slopes.
     """
     start = np.zeros((len(values), (degree + 1) * (degree + 2) // 2))

@@ -1,8 +1,11 @@
 """Fits to scattered points: least squares from several starts, exchange, and rounding.
 
-From the best of several least squares fits, the largest error is made least by linear programs
-where the goal asks for it, and the worst points of elsewhere are added in turn (exchange). Then the
-coefficients are rounded in turns, those that matter most first, and the others are fitted again.
+1. Least squares: the best result of several starts is kept.
+2. If the goal's norm is 'linf', linear programs minimise the largest error at the points of the
+   sample. The points outside the sample that have the largest errors are then added to it, and the
+   step is repeated. This is called exchange.
+3. If the goal has a rounding, the coefficients are rounded in groups, those whose rounding changes
+   the values most first. After each group, the coefficients that are not yet rounded are refitted.
 """
 
 from dataclasses import dataclass, field
@@ -27,17 +30,21 @@ PRECISIONS = {"float32": np.float32, "float16": np.float16}
 
 @dataclass(frozen=True)
 class Exchange:
-    """The solver of fits to scattered points, and what tunes it.
+    """The solver of fits to scattered points, with its tuning constants.
 
-    * `steps`, `steps_of_many`, `many`: steps of least squares, and fewer for a form of more
-      coefficients than `many`, which steps slowly.
-    * `penalty_floor`: what must stay positive is pushed up to this in least squares.
-    * `linearised`: iterations of the linear start, which divides a quotient's error by its last
-      denominator.
-    * `exchanges`, `exchanged`, `settled`: the worst points of elsewhere are added at most so many
-      times, so many at a time, until none has an error that is larger by this part.
-    * `turns`: coefficients are rounded in so many turns.
-    * `minimax`, and `minimax_of_rounding` after each turn: the solver of the least largest error.
+    * `steps`: the most steps of least squares. A form with more than `many` coefficients takes at
+      most `steps_of_many`, because each of its steps is slow.
+    * `penalty_floor`: in least squares, a penalty applies where the number that must stay positive
+      is below this.
+    * `linearised`: the number of linear fits that compute a start for a quotient. Each divides the
+      errors by the denominator of the fit before.
+    * `exchanges`, `exchanged`, `settled`: at most `exchanges` times, up to `exchanged` points with
+      the largest errors outside the sample are added to it, and those that hill climbing finds. The
+      exchange ends when their largest error exceeds that of the sample by at most the fraction
+      `settled`.
+    * `turns`: the number of groups in which the coefficients are rounded.
+    * `minimax`: minimises the largest error. `minimax_of_rounding` does so after each group is
+      rounded.
     """
 
     steps: int = 1000
@@ -55,10 +62,10 @@ class Exchange:
     def fit(
         self, form: Form, goal: Goal, measure: str, start: np.ndarray | None, progress: Progress
     ) -> tuple[np.ndarray, Sample]:
-        """Return flat coefficients, and the sample that they were fitted on.
+        """Return flat coefficients, and the sample on which they were fitted.
 
-        `start` (coefficients, flat) replaces the form's own starts. Raises ValueError where no
-        start gives a form without poles.
+        `start`, flat coefficients, replaces the form's own starts. `progress` is called with a text
+        before each step. Raises ValueError if no start leads to a form without poles.
         """
         progress(f"exact {form.reference.symbol} where {form.name} is fitted")
         sample = sample_of(form, goal, measure)
@@ -76,7 +83,11 @@ class Exchange:
         return found, sample
 
     def _linear_start(self, form: Form, sample: Sample) -> np.ndarray:
-        """Return the last of a sequence of linear problems whose denominators stay positive."""
+        """Return the coefficients of the last of the linear fits with positive denominators.
+
+        Raises ValueError for a form that is no quotient of linear functions, and if the first fit
+        already has a denominator that is not positive.
+        """
         parts = linear_parts(form, sample.points)
         if parts is None:
             raise ValueError(f"{form.name} has no starts: give one")
@@ -117,9 +128,10 @@ class Exchange:
     def _least_largest(
         self, form: Form, sample: Sample, goal: Goal, measure: str, start: np.ndarray
     ) -> tuple[np.ndarray, Sample]:
-        """Minimise the largest error, with the worst points of elsewhere added in turn.
+        """Minimise the largest error, adding points with larger errors to the sample in turn.
 
-        Returns the coefficients whose largest error, elsewhere too, is least.
+        Returns the coefficients with the least largest error, inside and outside the sample, and
+        the extended sample.
         """
         best, least, found = start, np.inf, start
         for turn in range(self.exchanges if len(start) else 0):
@@ -135,7 +147,11 @@ class Exchange:
         return best, sample
 
     def _worst_elsewhere(self, form: Form, found: np.ndarray, goal: Goal, measure: str, seed: int):
-        """Return the worst points of a finer set and of hill climbing from them, and how bad."""
+        """Return the points outside the sample with the largest errors, and the largest error.
+
+        They come from a finer set of points, and from hill climbing that starts there. An error
+        that the goal does not allow counts as much larger (`badness`).
+        """
 
         def size(points: np.ndarray, exact: np.ndarray) -> np.ndarray:
             scale = scale_at(points, exact, form, goal, measure)
@@ -154,10 +170,10 @@ class Exchange:
         return added, float(size(added.points, added.exact).max())
 
     def _rounded(self, form: Form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
-        """Round the coefficients in turns, and refit those that are left after each."""
+        """Round the coefficients in groups. After each, refit those that are not yet rounded."""
         dtype = PRECISIONS[goal.rounding]
         slopes = _problem(form, sample, goal).slopes(found, np.arange(len(sample.exact)))
-        # What rounding one may do to the values: most first.
+        # The coefficients whose rounding may change the values most come first.
         order = np.argsort(-np.abs(found) * np.max(np.abs(slopes), axis=0, initial=0.0))
         free, found = np.full(len(found), True), found.copy()
         for turn in np.array_split(order, min(self.turns, max(len(order), 1))):
@@ -182,7 +198,7 @@ def _problem(
     free: np.ndarray | None = None,
     fixed: np.ndarray | None = None,
 ) -> Residuals:
-    """Return the residuals of the free coefficients, by default all."""
+    """Return the residuals as functions of the free coefficients; by default all are free."""
     free = np.full(form.size, True) if free is None else free.copy()
     fixed = np.zeros(form.size) if fixed is None else fixed.copy()
     return residuals(form, sample.points, sample.exact, sample.scale, free, fixed, goal.bounded)

@@ -12,9 +12,9 @@ Residual = Callable[[Array], Array]
 
 
 def solve_linear(matrix: Array, values: Array) -> Array:
-    """Return the z (n,) that minimises |matrix z − values|², matrix (m, n), m ≥ n, by QR.
+    """Return the z (n,) that minimises |matrix·z − values|² by QR, for a matrix (m, n) with m ≥ n.
 
-    Several columns of values (m, k) give as many of z (n, k).
+    If `values` is (m, k), each column is a problem of its own, and z is (n, k).
     """
     scale = 1 / jnp.linalg.norm(matrix, axis=0)
     q, r = jnp.linalg.qr(matrix * scale)
@@ -26,8 +26,9 @@ def solve_nonlinear(
 ) -> Array:
     """Minimise |residual(z)|² from `start` (n,) by Optimistix's Levenberg–Marquardt.
 
-    It stops at a change below `atol` and a relative one below `rtol`, or after `steps`. Judge the
-    result by its residual, not by the solver's word.
+    It stops when a step changes both z and the objective by less than `atol` + `rtol` times their
+    size, or after `steps` steps. It does not report whether it converged: judge the result by its
+    residual.
     """
     solver = optx.LevenbergMarquardt(rtol=rtol, atol=atol, linear_solver=lx.Normal(lx.Cholesky()))
     solution = optx.least_squares(
@@ -37,7 +38,7 @@ def solve_nonlinear(
 
 
 def solve_nonlinear_jaxopt(residual: Residual, start: Array, steps: int = 300) -> Array:
-    """Minimise the same by jaxopt's Levenberg–Marquardt: a second opinion, for tests."""
+    """Minimise |residual(z)|² by jaxopt: an independent solver, for comparison in tests."""
     import jaxopt  # noqa: PLC0415  it warns at import, and only the cross-check needs it
 
     solver = jaxopt.LevenbergMarquardt(residual, maxiter=steps, tol=1e-12, xtol=1e-12, gtol=1e-12)

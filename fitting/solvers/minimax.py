@@ -1,7 +1,9 @@
-"""The least largest error, by a sequence of linear programs.
+"""Coefficients with the least largest error, by a sequence of linear programs.
 
-Each program is that of the form's tangent, within a trust region. Where a form is linear in its
-coefficients, the tangent is the form; elsewhere the result is a minimum among its neighbours.
+Each linear program replaces the form by its tangent at the present coefficients, and lets them move
+only within a trust region, where the tangent is close to the form. A form that is linear in its
+coefficients is its own tangent, so that the result is the global minimum. For other forms it is a
+local minimum.
 """
 
 import functools
@@ -18,21 +20,24 @@ from fitting.goal import Side
 from fitting.linearity import positive_of
 from integrals.reference import in_batches
 
-# Points, and points with derivatives, that are evaluated at once.
+# The number of points at which values are evaluated at once, and at which derivatives are.
 _BATCH, _BATCH_OF_SLOPES = 4096, 512
-# Bounded values are kept this far from 0 and 1 at the points.
+# The values of a bounded fit are kept this far from the ends of the codomain at the points, so that
+# they also stay within it elsewhere.
 _ROOM = 1e-3
-# An error on the wrong side counts this many times when points and steps are chosen.
+# When points and steps are chosen, the part of an error beyond what is allowed counts this many
+# times.
 _WRONG = 1e5
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """The weighted errors that are made small, as functions of the free coefficients (m,).
+    """The weighted errors that a fit minimises, as functions of the free coefficients (m,).
 
-    `values` gives errors (n,), `slopes` their derivatives (rows, m) at some rows. `positive` and
-    `positive_slopes` are the same for what the form keeps positive. `least` and `most` (n,) are
-    the lowest and the highest errors that are allowed.
+    * `values` returns the errors (n,) at all points.
+    * `slopes` takes the indices of some points too, and returns the derivatives (rows, m) there.
+    * `positive` and `positive_slopes` do the same for the number that must stay positive.
+    * `least` and `most` (n,) are the lowest and the highest error that is allowed at each point.
     """
 
     values: Callable[[np.ndarray], np.ndarray]
@@ -54,8 +59,9 @@ def residuals(
 ) -> Residuals:
     """Return the weighted errors of a form as functions of its free coefficients.
 
-    `free` (m,) tells which coefficients are free; the others have their values in `fixed` (m,).
-    `bounded` allows no value of the form below 0 or above 1, with some room to either.
+    `free` is a mask of the free coefficients; the others have their values in `fixed`. Both have an
+    element for each coefficient of the form. If `bounded`, values of the form are only allowed
+    between 0 and 1, with some distance from both.
     """
 
     def at(function, z, x, batch):
@@ -63,8 +69,10 @@ def residuals(
         whole[free] = z
         return np.asarray(in_batches(functools.partial(function, form, whole), x, batch))
 
-    # No more room than half of what the exact value leaves: it may be 0 or 1.
-    low, high = np.minimum(_ROOM, exact / 2), 1 - np.minimum(_ROOM, (1 - exact) / 2)
+    # The exact value may itself be an end: the distance is at most half of the exact value's own.
+    lower, upper = form.reference.codomain
+    low = lower + np.minimum(_ROOM, (exact - lower) / 2)
+    high = upper - np.minimum(_ROOM, (upper - exact) / 2)
     least, most = (
         (end - exact) * scale if bounded else np.full(len(exact), limit)
         for end, limit in ((low, -np.inf), (high, np.inf))
@@ -88,7 +96,7 @@ def _room(form: Form, c: Array, point: Array) -> Array:
 
 
 def _at_points(function):
-    """Compile a function of a form, coefficients and a point for points: once for a form."""
+    """Map a function of a form, coefficients and a point over points; compiled once for a form."""
     return jax.jit(
         lambda form, c, points: jax.vmap(lambda p: function(form, c, p))(points), static_argnums=0
     )
@@ -100,18 +108,21 @@ _slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_ro
 
 @dataclass(frozen=True)
 class Minimax:
-    """The solver of the least largest error, and what tunes it.
+    """The solver that minimises the largest error, with its tuning constants.
 
-    * `programs`: at most so many linear programs.
-    * `rows`, `rows_a_coefficient`: each program has the worst points, this many and so many more
-      a coefficient.
-    * `trust`, `least_trust`: the first step may change a coefficient by this part; the search ends
-      when the trust region is smaller than the second.
-    * `worthwhile`, `patience`: programs that lower the error by less than this part are idle; the
-      search ends after so many idle ones.
-    * `over`: a slack on what is not allowed costs this much in a program, so that a start may be
-      on the wrong side.
-    * `floor`: what must stay positive is kept above this at the points.
+    * `programs`: the most linear programs that are solved.
+    * `rows`, `rows_a_coefficient`: at first, a program has the `rows` points with the largest
+      errors, and `rows_a_coefficient` more for each coefficient. Later programs keep these points,
+      and so may have up to three times as many.
+    * `trust`, `least_trust`: the first step may change a coefficient by the fraction `trust` of its
+      size. This trust region grows after a good step and shrinks after a bad one. The search ends
+      when it is smaller than `least_trust`.
+    * `worthwhile`, `patience`: a program that lowers the error by less than the fraction
+      `worthwhile` counts as idle, and one that does not lower it as half an idle one. The search
+      ends after `patience` idle ones.
+    * `over`: an error beyond what is allowed costs this many times as much as an allowed one in a
+      linear program. It is not forbidden, because the start may have such errors.
+    * `floor`: the number that must stay positive is kept above this at the points.
     """
 
     programs: int = 30
@@ -125,9 +136,9 @@ class Minimax:
     floor: float = 1e-3
 
     def __call__(self, problem: Residuals, start: np.ndarray, side: Side = "both") -> np.ndarray:
-        """Return coefficients (m,) whose largest error is least.
+        """Return the coefficients (m,) with the least largest error that were found from `start`.
 
-        `side` is 'both', 'below' (every error ≤ 0 at the points) or 'above'.
+        `side` is 'both', 'below' (every error ≤ 0 at the points) or 'above' (every error ≥ 0).
         """
         best = np.asarray(start, float)
         if not len(best):
@@ -158,7 +169,10 @@ class Minimax:
         return best
 
     def _step(self, problem, z, error, rows, allowed, trust) -> np.ndarray:
-        """Solve the tangent's program: the step (m,) that makes the largest linear error least."""
+        """Return the step (m,) that minimises the largest error of the tangent at points `rows`.
+
+        It is zero if the linear program is not solved.
+        """
         slopes, values = problem.slopes(z, rows), error[rows]
         room = problem.positive(z)
         low = largest_of(-room, self.rows)
@@ -168,9 +182,10 @@ class Minimax:
         guard, spare = guard[held], np.maximum(spare[held], 0.0)
         unit = 1 / np.maximum(np.abs(slopes).max(axis=0), 1e-12)
         radius = trust * np.maximum(np.abs(z), 0.05) / unit
-        # t bounds the size of every error. What is not allowed is bounded by a slack s, which costs
-        # so much that it is zero wherever it can be. Where a whole side is not allowed, t does not
-        # bound it.
+        # The program minimises t + over·s. The variable t bounds the size of every allowed error.
+        # The slack s bounds by how much errors exceed what is allowed; it costs so much that it is
+        # zero if it can be. If no positive error is allowed at a point, only s bounds it there, and
+        # so for negative errors.
         least, most = (each[rows] for each in allowed)
         parts = [
             _rows(slopes * unit, -values, most > 0, 0),
@@ -187,7 +202,7 @@ class Minimax:
 
 
 def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest errors (n,) that the problem and a side allow."""
+    """Return the lowest and the highest error (n,) that both the problem and the side allow."""
     return (
         np.maximum(problem.least, 0) if side == "above" else problem.least,
         np.minimum(problem.most, 0) if side == "below" else problem.most,
@@ -195,7 +210,7 @@ def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
 
 
 def badness(error: np.ndarray, least: np.ndarray, most: np.ndarray) -> np.ndarray:
-    """Return the size of each error, larger where it is not allowed; ∞ where it is NaN."""
+    """Return the size of each error (n,), much larger if it is not allowed; ∞ for NaN."""
     bad = np.abs(error) + _WRONG * np.maximum(np.maximum(error - most, least - error), 0)
     return np.where(np.isfinite(bad), bad, np.inf)
 
@@ -209,7 +224,10 @@ def largest_of(size: np.ndarray, count: int) -> np.ndarray:
 
 
 def _rows(matrix, limit, some, column) -> tuple[np.ndarray, np.ndarray]:
-    """Return some rows of matrix·z ≤ limit, the right side raised by the variable of a column."""
+    """Return the inequalities matrix·z ≤ limit of some rows, for the linear program.
+
+    `column` 0 adds the variable t to the right side, 1 adds s, and None adds nothing.
+    """
     raised = np.zeros((int(some.sum()), 2))
     if column is not None:
         raised[:, column] = -1

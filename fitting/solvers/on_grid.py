@@ -1,4 +1,4 @@
-"""Least squares fits on a tensor grid of the whole domain, with errors measured on the grid."""
+"""Least squares fits on a tensor grid over the whole domain."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,10 +21,13 @@ MARQUARDT = "Levenberg–Marquardt (optimistix)"
 
 @dataclass(frozen=True)
 class GridFit:
-    """What a fit on a grid gives: coefficients, the grid, and errors on it.
+    """The result of a fit on a grid.
 
-    `measure` names the weights that were chosen; `inner` counts the second stage's points a node (0
-    where there are none); `solver` is what solved it, in words.
+    * `on_grid`: the errors on the grid.
+    * `reference_error`: a bound on the error of the exact values.
+    * `measure`: the name of the measure that weighs the errors.
+    * `inner`: the number of the second stage's points at each node; 0 if there are none.
+    * `solver`: the solver, in words.
     """
 
     coefficients: Array
@@ -38,10 +41,13 @@ class GridFit:
 
 @dataclass(frozen=True)
 class OnGrid:
-    """Solver of a form on a grid of its own: `make_grid` makes it, `solve` finds the coefficients.
+    """The solver of a form on a grid.
 
-    `solve` takes the grid and the exact values (points,); None stands for the general solver.
-    `goal` is what such a fit makes small, if that is not the squares of the errors.
+    * `make_grid`: makes the grid from axes and a number of nodes an axis.
+    * `solve`: returns the coefficients for the grid and the exact values (points,). None stands for
+      `solve_in_general`.
+    * `description`: names `solve` in words; None stands for Levenberg–Marquardt.
+    * `goal`: what `solve` minimises, if that is not the sum of squared errors.
     """
 
     make_grid: MakeGrid = gauss_grid
@@ -50,7 +56,7 @@ class OnGrid:
     goal: Goal = LEAST_SQUARES
 
     def fit(self, form: Form, count: int, _measure: str, progress: Progress) -> GridFit:
-        """Fit on `count` nodes an axis."""
+        """Fit on `count` nodes an axis. Errors are weighed by the grid, not by a measure."""
         grid = self.make_grid(form.axes, count)
         progress(f"exact {form.reference.symbol} on the grid")
         estimates = form.reference.estimates(grid.points)
@@ -68,11 +74,13 @@ class OnGrid:
 
 
 def solve_in_general(form: Form, grid: Grid, exact: Array) -> tuple[Array, str]:
-    """Return the coefficients (flat) of a least squares fit on a grid, and the solver in words.
+    """Return the flat coefficients of a least squares fit on a grid, and the solver in words.
 
-    A form that is linear in its coefficients is solved by QR. Others go to Levenberg–Marquardt,
-    from the form's own starts or, if it is a quotient of linear functions, from the linear problem
-    that is left when the error is multiplied by the denominator.
+    A form that is linear in its coefficients is solved by QR. Other forms are fitted by
+    Levenberg–Marquardt, and the best result of the form's starts is returned. A quotient of linear
+    functions needs no starts: the errors times the denominator are linear in the coefficients, and
+    the coefficients that minimise these are the start. Raises ValueError for any other form without
+    starts.
     """
     root, points = np.sqrt(grid.weights), grid.points
     parts = linear_parts(form, points)
@@ -104,7 +112,7 @@ def solve_in_general(form: Form, grid: Grid, exact: Array) -> tuple[Array, str]:
 
 
 def _linear(parts: LinearParts, root: np.ndarray, exact: Array) -> Array:
-    """Solve the linear problem whose errors are multiplied by the denominator."""
+    """Return the coefficients that minimise the errors times the denominator, which are linear."""
     known = np.asarray(exact)
     matrix = parts.a - known[:, None] * parts.b
     values = (known - parts.a0 / parts.b0) * parts.b0 * root

@@ -1,9 +1,9 @@
-"""Least squares fits of quotients whose features are known (fitting/shapes/quotients.py).
+"""Least squares fits of quotients of known features (fitting/shapes/quotients.py).
 
-A fit starts from the best polynomial, whose denominator is one; no fit starts from published
-constants. A penalty on small denominators keeps Levenberg–Marquardt from stepping across a pole.
-All starts without a pole in the domain that were tried end in the same minimum; starts with a pole
-do not (tests/fitting/test_quotients.py).
+A fit starts from the best polynomial, that is, with the denominator 1. It never starts from
+published constants. A penalty on small denominators keeps Levenberg–Marquardt from stepping across
+a pole. In tests, all starts without a pole in the domain lead to the same minimum, but starts with
+a pole do not (tests/fitting/test_quotients.py).
 """
 
 from collections.abc import Callable
@@ -18,11 +18,12 @@ from fitting.shapes.quotients import Quotients
 from fitting.solvers.least_squares import solve_linear, solve_nonlinear
 from integrals.reference import Axis
 
-# Denominators are pushed up to this at the nodes of a grid of its own, PENALTY_NODES an axis.
+# The penalty applies to denominators below this. They are evaluated on a grid of their own, which
+# has PENALTY_NODES nodes an axis.
 DENOMINATOR_FLOOR = 0.02
 PENALTY_NODES = 17
 
-# Maps the values (n,) or (n, rows) of the quotients to weighted errors, an array of any shape.
+# A function from the values (n,) or (n, rows) of the quotients to weighted errors, in any shape.
 Errors = Callable[[Array], Array]
 
 
@@ -37,9 +38,13 @@ def fit_quotients(
 ) -> Array:
     """Return the coefficients (k,) or (rows, k) that minimise the sum of squared `errors`.
 
-    `points` (n, axes) are the nodes, `root` (n,) the roots of their weights, and denominators are
-    kept above the floor at the points `penalised`. The polynomial start fits `targets`, (n,) or
-    (n, rows), which are the values that the quotients should have. To be called within `jax.jit`.
+    * `points` (n, axes): the nodes. `root` (n,): the square roots of their weights.
+    * `penalised` (m, axes): the points where denominators are kept above the floor.
+    * `targets` (n,) or (n, rows): the values that the quotients should have. Only the polynomial
+      that the fit starts from is fitted to them.
+    * `steps`: the most steps of Levenberg–Marquardt.
+
+    Call this inside a function that is compiled by `jax.jit`.
     """
     split, offset = shape.above + 1, jnp.asarray(shape.offset)
     numerator, features, factor = shape.columns(jnp.asarray(points))
@@ -61,12 +66,12 @@ def fit_quotients(
 
 
 def penalty_points(axes: tuple[Axis, ...]) -> np.ndarray:
-    """Return the points (n, axes) at which denominators are kept above the floor."""
+    """Return the points (n, axes) where denominators are kept above the floor."""
     return trapezoid_grid(axes, PENALTY_NODES).points
 
 
 def fit_quotient_on_grid(shape: Quotients, grid: Grid, exact: Array) -> Array:
-    """Fit one quotient to exact values (points,) on a grid; returns coefficients (k,)."""
+    """Fit one quotient to exact values (points,) on a grid. Returns the coefficients (k,)."""
 
     @jax.jit
     def fit(points: Array, penalised: Array, root: Array, exact: Array) -> Array:

@@ -1,10 +1,11 @@
 """Fits of two-stage forms whose second stage is linear in the results of the first.
 
-For given values of the axes that the first stage takes (of P_s: one material), the error is linear
-in the first stage's results: one linear least squares problem a node over the second stage's points
-(of P_s: lights). Its QR factor R turns the error of any other results m into
-|R (m − m*)|² + residual²: the sum over the second stage's points is exact, and never has to be
-formed again. The coefficients of the first stage are then fitted together.
+The first stage takes the axes that many points share; for P_s they are the material. At each node
+of a grid of these axes, the best results m* of the first stage are found by linear least squares
+over the points of the second stage; for P_s these are lights. The factor R of this problem's QR
+decomposition gives the squared error of any other results m, summed over all these points:
+|R (m − m*)|² + residual². This is exact, so that the sum is not computed again when the
+coefficients of the first stage are then fitted to all nodes together.
 """
 
 import functools
@@ -26,10 +27,11 @@ from fitting.solvers.quotients import fit_quotients, penalty_points
 
 @dataclass(frozen=True)
 class NodeFits:
-    """The best results of the first stage at every node, by themselves.
+    """The best m results of the first stage at every node, each node fitted by itself.
 
-    `optimum` (a, t, m): the results at node a of the first axis and t of the second; `factors`
-    (t, m, m): the QR factors; `residuals` (a, t): the mean square errors that are left.
+    * `optimum` (a, t, m): the best results at the nodes of the first axis (a) and the second (t).
+    * `factors` (t, m, m): the factors R of the QR decompositions.
+    * `residuals` (a, t): the mean square error of the best results.
     """
 
     optimum: Array
@@ -39,15 +41,19 @@ class NodeFits:
 
 @dataclass(frozen=True)
 class Separable:
-    """Solver of a two-stage form of two shared axes, whose second stage is linear.
+    """The solver of a two-stage form with two shared axes whose second stage is linear.
 
-    `shape` is the first stage. `rule` maps a measure's name to points (n, …) of the second stage's
-    own axes and weights (n,) that sum to one. `exact` maps the shared axes and the second stage's
-    inputs to the exact value. The second stage's inputs, and so the factors, may depend on the
-    second of the shared axes, but not on the first.
+    * `shape`: the first stage.
+    * `rule`: maps the name of a measure to points (n, …) of the axes that only the second stage
+      takes, called inner points, and their weights (n,), which sum to one.
+    * `exact`: maps the shared axes and the inputs of the second stage to the exact value.
+    * `steps`: the most steps of the joint fit.
+    * `nodes`: the joint fit uses about this many nodes an axis of a finer grid, because its time is
+      proportional to their number and the surfaces are smooth. Errors are measured on all nodes.
+    * `description`: the solver in words, for the table.
 
-    The joint fit ends after `steps`. It skips nodes of a grid that has more than `nodes` an axis:
-    the surfaces are smooth, and the time goes with the nodes. Errors are measured on all of them.
+    The inputs of the second stage, and therefore the factors R, may depend on the second of the
+    shared axes but not on the first.
     """
 
     shape: Quotients
@@ -58,7 +64,7 @@ class Separable:
     description: str = "QR per cell; Levenberg–Marquardt (optimistix) of all coefficients together"
 
     def fit(self, form: Form, count: int, measure: str, progress: Progress) -> GridFit:
-        """Fit on `count` nodes an axis; `measure` names the weights of the inner points."""
+        """Fit on `count` nodes an axis. `measure` names the weights of the inner points."""
         reference = form.reference
         grid = trapezoid_grid(form.axes[: form.shared], count)
         progress(f"exact {reference.symbol} and the best combination in every cell")
@@ -85,7 +91,7 @@ class Separable:
         return GridFit(coefficients, grid, on_grid, error, measure, inner, self.description)
 
     def node_fits(self, form: Form, grid: Grid, measure: str) -> NodeFits:
-        """Solve every node of a grid of the shared axes by QR over weighted inner points."""
+        """Find the best results at every node of a grid of the shared axes, by QR."""
         inner, weights = self.rule(measure)
         exact = _exact_values(form, self.exact)(*grid.nodes, inner)
         found = _solve_nodes(form, self.count)(grid.nodes[1], inner, weights, exact)
@@ -94,12 +100,12 @@ class Separable:
 
     @property
     def count(self) -> int:
-        """How many results the first stage has."""
+        """The number of results of the first stage."""
         assert isinstance(self.shape.offset, tuple)
         return len(self.shape.offset)
 
     def _jointly(self, grid: Grid, fits: NodeFits) -> Array:
-        """Fit all coefficients together, on the sum over the inner points, which `fits` hold."""
+        """Fit all coefficients together; `fits` hold the sums over the inner points."""
         grid, fits = _thinned(grid, fits, self.nodes)
         root = np.sqrt(grid.weights)
         shape = fits.optimum.shape
@@ -120,7 +126,7 @@ class Separable:
     def _largest_error(
         self, form: Form, grid: Grid, measure: str, first: Array
     ) -> tuple[float, np.ndarray]:
-        """Return the largest error of the first stage's results (a, t, m), and the point."""
+        """Return the largest error for results (a, t, m) of the first stage, and its point."""
         firsts, seconds = grid.nodes
         inner, _ = self.rule(measure)
         exact = _exact_values(form, self.exact)(firsts, seconds, inner)
@@ -133,16 +139,16 @@ class Separable:
 
 
 def _inputs_of(form: Form, node, inner):
-    """Evaluate the second stage's inputs at inner points (n, …) for a node of the second axis."""
+    """Return the second stage's inputs at inner points (n, …), for a node of the second axis."""
     assert form.inputs is not None
     inputs = form.inputs
-    # The first axis does not matter.
+    # The inputs do not depend on the first axis (see Separable): any value of it will do.
     first = form.axes[0].lower
     return jax.vmap(lambda point: inputs(first, node, *point))(inner)
 
 
 def _basis(form: Form, count: int, node, inner):
-    """Evaluate what multiplies each of the first stage's `count` results: (n, count)."""
+    """Return the factors (n, count) of the first stage's `count` results in the second stage."""
     second = form.stages[1].call
 
     def row(*inputs):
@@ -183,10 +189,14 @@ def _search_nodes(form: Form, count: int):
     return search
 
 
-# Compiled once for both of its callers. Within a loop XLA keeps the root in vector registers.
+# Cached, so that its two callers share one compilation. In the loop of `lax.map` XLA keeps the
+# values from which P_s is computed in vector registers, which is much faster than one large `vmap`.
 @functools.lru_cache(maxsize=8)
 def _exact_values(form: Form, exact: Callable[..., Array]):
-    """Return a function that gives the exact values (t, a, n) at nodes t, a and inner points n."""
+    """Return a function that computes exact values (t, a, n).
+
+    Its arguments are nodes (a,) and (t,) of the two shared axes and inner points (n, …).
+    """
 
     @jax.jit
     def values(firsts, seconds, inner):
@@ -202,7 +212,11 @@ def _exact_values(form: Form, exact: Callable[..., Array]):
 
 
 def _thinned(grid: Grid, fits: NodeFits, most: int) -> tuple[Grid, NodeFits]:
-    """Keep every k-th node so that at most about `most` an axis are left, both ends among them."""
+    """Keep every k-th node of each axis, both ends included, so that about `most` are left.
+
+    k is the largest divisor of the number n of intervals that is at most ⌈n/(most − 1)⌉. If n is
+    prime, all nodes are kept.
+    """
     count = len(grid.nodes[0])
     stride = -(-(count - 1) // (most - 1))
     while (count - 1) % stride:

@@ -21,9 +21,9 @@ from shading import optical_path, scattering_kernel
 from shading.types import Scalar
 
 DENSITY = Axis(
-    "density", "d", "1", 0.0, np.inf, "thickness of the layer over its mean free path", alias="d"
+    "density", 0.0, np.inf, "d", meaning="thickness of the layer over its mean free path", alias="d"
 )
-COS_V = Axis("cos_v", "ν", "1", 0.0, 1.0, "cosine of view and normal, v·n", alias="nu")
+COS_V = Axis("cos_v", 0.0, 1.0, "ν", meaning="cosine of view and normal, v·n", alias="nu")
 AXES = (DENSITY, COS_V)
 
 

@@ -26,15 +26,15 @@ from shading import (
 )
 from shading.types import Scalar
 
-ALPHA = Axis("alpha", "α", "1", 0.0, 1.0, "projected area along the fibre", open_below=True)
-THETA_F = Axis("theta_f", "θf", "rad", 0.0, np.pi / 2, "polar angle of the fibre")
-THETA_U = Axis("theta_u", "θu", "rad", 0.0, np.pi / 2, "polar angle of the light")
+ALPHA = Axis("alpha", 0.0, 1.0, "α", meaning="projected area along the fibre", open_below=True)
+THETA_F = Axis("theta_f", 0.0, np.pi / 2, "θf", "rad", "polar angle of the fibre")
+THETA_U = Axis("theta_u", 0.0, np.pi / 2, "θu", "rad", "polar angle of the light")
 PHI = Axis(
     "phi",
-    "φ",
-    "rad",
     -2 * np.pi,
     2 * np.pi,
+    "φ",
+    "rad",
     "azimuth of the light relative to the fibre",
     period=2 * np.pi,
 )

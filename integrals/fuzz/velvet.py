@@ -18,7 +18,7 @@ from shading import direction, half_vector, velvet_lobe
 from shading.types import Scalar
 
 ASYMMETRY = Axis(
-    "asymmetry", "k", "1", -1.0, 0.0, "asymmetry of Schlick's lobe", open_below=True, alias="k"
+    "asymmetry", -1.0, 0.0, "k", meaning="asymmetry of Schlick's lobe", open_below=True, alias="k"
 )
 AXES = (ASYMMETRY,)
 

@@ -1,4 +1,4 @@
-"""G: average over lights of what the layer scatters to the view."""
+"""The quantity G: the average over lights of what the layer scatters to the view."""
 
 import integrals
 from integrals.fuzz.g import ambient_scattering

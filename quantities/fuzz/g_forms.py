@@ -1,7 +1,8 @@
-"""Forms of G: a part F(ν) of what an infinitely dense layer returns, which grows with density.
+"""Forms of G: its limit for an infinitely dense layer times a factor that grows with density.
 
-To within a few per cent G = F(ν) (1 − e^(−d/ν …)). The exponent's rate and the factor F, of ν
-alone, are rational. The power 1/(1 + x)⁴ may stand for the exponential.
+To within a few per cent G = F(ν) (1 − D(x)). F is the limit, which depends on ν = v·n alone. The
+decay D falls from 1 to 0 as x grows: either e^(−x) or the fourth power of a rational function of x.
+The rate x is about d/ν. F and x are rational functions.
 """
 
 import functools
@@ -19,10 +20,10 @@ from shading.types import Scalar
 
 AXES = restricted(G.axes, density=(0.001, 0.5), cos_v=(0.001, 1.0))
 
-# Names of a piece's coefficients, the piece as a function of them and of d and ν, and a start.
+# A part of a form: the names of its coefficients, a function of them (and of d and ν), and a start.
 Piece = tuple[tuple[str, ...], Callable, tuple[float, ...]]
 
-# How fast 1 − e^(−x) grows: the exponent x. G = d/ν + … for small d.
+# The rate x. It is close to d/ν for small d, because G = d/ν + O(d² ln d).
 RATES: dict[str, Piece] = {
     "constant": (("1",), lambda c, d, nu: d * (1 / nu + c[0]), (2.4,)),
     "scaled": (("1", "1/ν"), lambda c, d, nu: d * (c[0] + c[1] / nu), (2.4, 1.0)),
@@ -32,7 +33,7 @@ RATES: dict[str, Piece] = {
         (2.2, 0.1, 0.03),
     ),
 }
-# The limit of G as d grows.
+# The factor F, the limit of G as d grows.
 FACTORS: dict[str, Piece] = {
     "linear": (("ν",), lambda c, d, nu: 1 / (1 + c[0] * nu), (2.9,)),
     "affine": (("1", "ν"), lambda c, d, nu: 1 / (c[0] + c[1] * nu), (1.0, 2.9)),
@@ -48,9 +49,10 @@ DECAYS = ("exponential", "power")
 
 @functools.cache
 def decay_g(*, decay: str, rate: str, factor: str) -> Form:
-    """Return the form F (1 − D(x)): x a rate of RATES, F of FACTORS, and D of DECAYS.
+    """Return the form F (1 − D(x)) with x of RATES, F of FACTORS and D of DECAYS.
 
-    Its coefficients are those of the rate, of the factor, and of the decay.
+    D is e^(−x) for 'exponential' and 1/(1 + ax + bx²)⁴ for 'power'. The coefficients are those of
+    the rate, then those of the factor, then a and b of the power.
     """
     rate_names, rate_of, rate_start = RATES[rate]
     factor_names, factor_of, factor_start = FACTORS[factor]
@@ -69,7 +71,7 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         return (1 - 1 / (square * square)) * f
 
     parts = {"rate": rate_names, "factor": factor_names, "decay": power_names}
-    # The leading behaviour, with corrections of several sizes.
+    # This start is about right for small d and small ν. The fit also starts from multiples of it.
     start = np.array([*rate_start, *factor_start, *power_start])
     return Form(
         name="decay-g",
@@ -88,10 +90,11 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
 
 @functools.cache
 def tied_g(*, poles: int, root: int) -> Form:
-    """Return the form of G that is d/ν + … for small d and one at ν = 0, both exactly.
+    """Return a form of G that has the exact slope 1/ν at d = 0 and the exact value 1 at ν = 0.
 
-    (1 − e^(−d (1/ν + w)/(1 + c√d))) / (1 + νw): the rate and the factor share w(ν), a constant and
-    `poles` (0 or 1); `root` = 1 slows the rate by 1/(1 + c√d). The coefficients are w's, then c.
+    The form is (1 − e^(−d (1/ν + w)/(1 + c√d))) / (1 + νw). The rate and the factor share w(ν),
+    which is a constant, plus a pole if `poles` is 1. The divisor 1 + c√d is there only if `root` is
+    1. The coefficients are those of w, then c.
     """
 
     def value(c, density: Scalar, cos_v: Scalar) -> Array:
@@ -102,7 +105,7 @@ def tied_g(*, poles: int, root: int) -> Form:
             x = x / (1 + c[-1] * jnp.sqrt(d))
         return (1 - jnp.exp(-x)) / (1 + nu * w)
 
-    # An infinite layer's 1/(1 + 3ν), with corrections of two sizes.
+    # For an infinitely dense layer G is about 1/(1 + 3ν). The fit also starts from 1.3 times this.
     first = np.array([2.5, *((0.1, 0.05) if poles else ()), *((0.1,) if root else ())])
     return Form(
         name="tied-g",

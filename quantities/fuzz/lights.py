@@ -1,4 +1,4 @@
-"""Directions of light about a fibre: their cosines, and rules over the hemisphere of them."""
+"""Directions of light: their cosines with the normal and the fibre, and rules over all lights."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -25,11 +25,11 @@ def cosines_at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def light_directions(count: int, measure: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return lights (count², 2) as θu, φ and weights (count²,) that sum to one.
+    """Return lights (count², 2), as θu and φ in radians, and weights (count²,) that sum to one.
 
-    Gauss–Legendre in θu, midpoints in φ over [0, π], because P_s is even in φ. `measure` is the
-    weight of a direction in squared errors: uniform in the angles, by solid angle, or by projected
-    solid angle ('uniform', 'solid-angle', 'cosine').
+    The nodes are those of Gauss–Legendre in θu, and midpoints of φ in [0, π], because P_s is even
+    in φ. `measure` names the weight of a direction in squared errors: 'uniform' in the angles, by
+    'solid-angle', or by 'cosine', that is, by projected solid angle.
     """
     x, w = np.polynomial.legendre.leggauss(count)
     theta = THETA_U.lower + (THETA_U.upper - THETA_U.lower) * (x + 1) / 2

@@ -1,4 +1,4 @@
-"""What the forms of P_s share: first a material's numbers, then the value for a light."""
+"""What the forms of P_s share: a first stage for a material, and a second one for each light."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,18 +14,20 @@ from integrals.reference import Axis, restricted
 from quantities.fuzz.lights import cosines_of_light
 from shading import direction_cosines
 
-COS_PHI = Axis("cos_phi", "cos φ", "1", -1.0, 1.0, "cosine of the light's azimuth")
-# κ = (1 − α)(1 + α) of a wide interval of α is above one: proofs divide α and θf at first.
+COS_PHI = Axis("cos_phi", -1.0, 1.0, "cos φ", meaning="cosine of the light's azimuth")
+# Interval arithmetic gives κ = (1 − α)(1 + α) bounds above 1 if the interval of α is wide. Proofs
+# therefore divide α and θf into this many pieces at first.
 FIRST_SPLIT = (64, 8)
 
 
 @dataclass(frozen=True)
 class DirectionProofs:
-    """How proofs see a form of P_s: functions of a material's numbers m and of cosines.
+    """Functions that proofs and fits of a form P̃_s use; m are the results of the first stage.
 
-    * `value(m, u·n, u·t)` is the form without floors of its denominators.
-    * `margins(m, n·t, u·n, u·t)`: if none is negative for any light, 0 ≤ P̃_s ≤ 1.
-    * `positive(m, u·n, u·t)`: the radicand or denominator that a fit could make negative.
+    * `value(m, u·n, u·t)`: the form without the lower limits of its denominators.
+    * `margins(m, n·t, u·n, u·t)`: a tuple. If no element is negative for any light and material,
+      0 ≤ P̃_s ≤ 1 (docs/range.md).
+    * `positive(m, u·n, u·t)`: a radicand or denominator that a fit could make negative.
     """
 
     value: Callable[..., Array]
@@ -45,10 +47,11 @@ def material_form(
     along: Callable[..., Array],
     proofs: DirectionProofs,
 ) -> Form:
-    """Return a form of P_s for α ≥ `least_alpha` of two stages.
+    """Return a form of P_s of two stages, for α ≥ `least_alpha`.
 
-    `material` maps coefficients, α and θf to the material's numbers m; `along` maps m, u·n and u·t
-    to the value. Proofs take the cosine of the azimuth for an axis in place of the azimuth.
+    `material` is the first stage, which maps the coefficients, α and θf to numbers m. `along` is
+    the second, which maps m, u·n and u·t to the value. Proofs have the axis cos φ in place of φ:
+    P_s depends on φ only through cos φ, which has each value only once in [−1, 1].
     """
     axes = restricted(PS.axes, alpha=(least_alpha, 1.0))
 
@@ -89,6 +92,9 @@ def material_form(
 
 
 def _bounded_cosines(theta_f, theta_u, cos_phi) -> tuple[Array, Array]:
-    """Return u·n and u·t for a proof: an interval does not know that u·t is a cosine."""
+    """Return u·n and u·t for a proof, u·t limited to [−1, 1].
+
+    The limit changes no value, but interval arithmetic alone would not find it.
+    """
     cos_un, cos_ut = direction_cosines(theta_f, theta_u, cos_phi)
     return cos_un, jnp.maximum(jnp.minimum(cos_ut, 1.0), -1.0)

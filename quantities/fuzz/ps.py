@@ -1,4 +1,4 @@
-"""P_s: part of the scattered light that goes down to the base."""
+"""The quantity P_s: the part of the scattered light that goes down to the base."""
 
 import numpy as np
 
@@ -14,14 +14,14 @@ from quantities.fuzz.supplement import RATIONAL_PS
 from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, Problem
 
 _COSINE = (0.0, 1.0)
-# The least α whose error in float32 is stated.
+# The error of the closed form in float32 is measured and stated for α from this on.
 LEAST_EXACT_ALPHA = 0.05
 
 
 def exact_functions(precision: str) -> tuple[Function, ...]:
     """Return the closed form as a function of u·n, u·t, n·t and α.
 
-    The precision ("half", "float" or "double") decides how many steps the root takes.
+    The precision ("half", "float" or "double") decides how many Newton steps compute the root.
     """
     steps = FLOAT64_STEPS if precision == "double" else FLOAT32_STEPS
 

@@ -1,9 +1,9 @@
-"""Forms of P_s that know the integral: its symmetries, the cubic's root, and where it is ½.
+"""Forms of P_s that have known properties of the exact function built in.
 
-P_s depends on c = u·n, a = u·t, b = n·t and α, and is the same for t and −t. With κ = 1 − α²,
-T = κab, σ² = 1 − κa², q = 1 − κb² and S = σ√q, the closed form (docs/closed-form.md) is that of a
-root λ of λ (λ − S + T)(λ + S + T) = α²c (1 − λ²). Each form has a part that is evaluated once for a
-material, and a short one for each direction of light.
+P_s depends on c = u·n, a = u·t, b = n·t and α. It is the same for t and −t, and ½ at α = 1. With
+κ = 1 − α², T = κab, σ² = 1 − κa², q = 1 − κb² and S = σ√q, the closed form (docs/closed-form.md)
+contains the positive root λ of λ (λ − S + T)(λ + S + T) = α²c (1 − λ²). Each form has a first stage
+that is evaluated once for a material, and a short second stage for each direction of light.
 """
 
 import functools
@@ -20,8 +20,8 @@ from quantities.fuzz.material import DirectionProofs, material_form
 from shading.types import Scalar
 
 MAX_DEGREE = 4
-# Denominators are larger for all unit vectors u, n and t: this keeps rounding, and cosines that no
-# such vectors have, from dividing by zero.
+# A lower limit of denominators and of λ. It changes no value for unit vectors u, n and t. It avoids
+# division by zero after rounding, and for cosines that belong to no unit vectors.
 LEAST = 1e-6
 
 
@@ -29,8 +29,9 @@ LEAST = 1e-6
 def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
     """Return ½ + (m₀c + m₁a [+ m₆ca]) / √(m₂ + m₃c + m₄a² [+ m₅ca]).
 
-    `skew` = 1 adds the products ca to both. The six functions of the material are polynomials in
-    α and y = cos²θf of a total degree. The value is ½ at α = 1.
+    The terms with the product ca are there only if `skew` is 1. The mᵢ depend on the material by
+    polynomials in α and y = cos²θf of total degree `degree`: four, or six with `skew`. The value is
+    ½ at α = 1.
     """
     surfaces = ["u0", "u1", "u2", "u3", "u4", "u5"][: 6 if skew else 4]
 
@@ -38,7 +39,7 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         return m[0] * c + a * (m[1] + m[6] * c) if skew else m[0] * c + m[1] * a
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
-        """Return m₀ … m₄, and m₅, m₆ where there are products."""
+        """Return m₀ … m₄, and with `skew` also m₅ and m₆."""
         alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
         y, kappa = b * b, (1 - alpha) * (1 + alpha)
         u = surface_values(coefficients, len(surfaces), degree, alpha, y)
@@ -55,11 +56,12 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         return 0.5 + _above(m, c, a) / jnp.sqrt(radicand(m, c, a))
 
     def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
-        """Return the radicand less the square of twice what is divided by its root."""
+        """Return r − 4N², where the form is ½ + N/√r (docs/range.md)."""
         twice = 2 * _above(m, cos_un, cos_ut)
         return (radicand(m, cos_un, cos_ut) - twice * twice,)
 
-    # The coplanar case c = 0, where T/2S is exact, and a light along n.
+    # The start approximates P_s at grazing light, c = 0, where P_s = ½ + T/(2S), and for a light
+    # along n.
     values = [0.2, 0.5, 0.0, -0.95, 0.0, 0.0][: len(surfaces)]
     return material_form(
         name="one-root-ps",
@@ -81,8 +83,9 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
 def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
     """Return 1 − t (t + m₃c) / (8 (σR + m₄c [+ m₆c²])), h = σ − m₁a [+ m₅c], R = √(h² + m₂c).
 
-    t = h + R is the root of a quadratic about S − T. `terms` (3, 4 or 5) is the number of functions
-    of the material, polynomials in α and y = cos²θf of a total degree. The form is exact at c = 0,
+    t = h + R is the positive root of t² = 2ht + m₂c; at c = 0, √q h = S − T. The mᵢ depend on the
+    material by `terms` (3, 4 or 5) polynomials in α and y = cos²θf of total degree `degree`. The
+    term with m₅ is there for 4 or 5 polynomials, that with m₆ for 5. The form is exact at c = 0,
     and ½ at α = 1.
     """
     surfaces = ["u0", "u1", "u2", "u3", "u4"][:terms]
@@ -96,7 +99,7 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
         return m[4] + m[6] * c if terms > 4 else m[4]
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
-        """Return m₀ … m₆, as many as the form has."""
+        """Return m₀ … m₄, and m₅ and m₆ if the form has them."""
         alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
         y, kappa, beta = b * b, (1 - alpha) * (1 + alpha), 1 - alpha
         q = 1 - kappa * y
@@ -135,14 +138,14 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
 
     def margins(m: tuple, cos_nt: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
         """Return m₂, t + m₃c, and a lower bound of (t/c) times the numerator of P̃_s."""
-        # notation: docs/range.md; q = 1 − κb². t ≥ 0 holds, but intervals do not show it.
+        # notation: docs/range.md; q = 1 − κb². t ≥ 0 if m₂ ≥ 0, but intervals would not show it.
         c, a = cos_un, cos_ut
         sigma, h, root = _parts(m, c, a)
         t, slope = jnp.maximum(h + root, 0), _slope(m, c)
         rise = 2 / jnp.sqrt(1 - m[0] * cos_nt * cos_nt) - (2 * m[5] if terms > 3 else 0) - m[3]
         return m[2], t + m[3] * c, t * (t * rise + 8 * slope - m[2]) + 4 * sigma * m[2]
 
-    # The root of λ² − 2hλ − e with e = (1.7 α)² c/q.
+    # In the start m₂ = (1.7 α)²/q, for 3 terms times 1 − α.
     values = [0.0, 0.03, 0.0] if terms == 3 else [0.0, 0.0, 0.03, 0.0, 0.0]
     return material_form(
         name="two-root-ps",
@@ -165,15 +168,17 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
 
 @functools.cache
 def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
-    """Return the closed form with the cubic's root λ from a quadratic and `steps` of Newton's.
+    """Return the closed form with an approximate root λ of the cubic.
 
-    P̃_s = 1 − √((λ + c)(λ + E/σ²)) / D, E = α²c, D = ((λ + T)² − S²)/λ + 2 (λ + T + E). In the
-    quadratic the cubic's factor λ + S + T is replaced by g = S + max(S, T), without coefficients.
-    If `degree` ≥ 0, g = S + √(S² + T² + m₅c) instead, m₅ a polynomial of that degree.
+    P̃_s = 1 − √((λ + c)(λ + E/σ²)) / D, E = α²c, D = ((λ + T)² − S²)/λ + 2 (λ + T + E). If the
+    factor λ + S + T of the cubic is replaced by a number g, a quadratic remains. Its positive root
+    is the first λ, and `steps` Newton steps follow. If `degree` is −1, g = S + max(S, T), and the
+    form has no coefficients. Otherwise g = S + √(S² + T² + m₅c), where m₅ contains a polynomial in
+    α and y = cos²θf of total degree `degree`.
     """
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
-        """Return κ, α², κb, q, √q, and m₅ where there is one."""
+        """Return κ, α², κb, q, √q, and m₅ if the form has it."""
         alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
         y, kappa, square = b * b, (1 - alpha) * (1 + alpha), alpha * alpha
         q = 1 - kappa * y
@@ -184,7 +189,8 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         return (*m, u * (1 - alpha) * square)
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        # notation: c, a, S, T, E, λ as above; w = −E₁ of λ³ + (E + 2T) λ² − E₁λ − E.
+        # notation: c, a, S, T, E and λ as above; the cubic is λ³ + (E + 2T) λ² + wλ − E, with
+        # w = T² − S².
         c, a = cos_un, cos_ut
         sigma2 = 1 - m[0] * a * a
         s, t, e = m[4] * jnp.sqrt(sigma2), m[2] * a, m[1] * c
@@ -209,7 +215,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         return 1 - jnp.sqrt((root + c) * (root + e / sigma2)) / jnp.maximum(ellipse, LEAST)
 
     def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
-        """Return the radicand in g, if there is one: all else is proven in docs/range.md."""
+        """Return the radicand in g, if g has one. docs/range.md proves that no more is needed."""
         if degree < 0:
             return ()
         s2, t = (1 - m[0] * cos_ut * cos_ut) * m[3], m[2] * cos_ut

@@ -1,4 +1,4 @@
-"""Q: average chance of light to penetrate the layer."""
+"""The quantity Q: the average chance of light to penetrate the layer."""
 
 import integrals
 from integrals.fuzz.q import average_penetration

@@ -1,6 +1,7 @@
-"""Forms of Q in one variable: a polynomial and poles, inside what is known of Q at d = 0.
+"""Forms of Q: a polynomial and poles, combined with the known behaviour of Q at d = 0.
 
-Q = 1 − 2d − d² ln d + O(d²): near d = 0 neither polynomials nor rational functions of d follow it.
+Q = 1 − 2d − d² ln d + O(d²). Because of the logarithm, polynomials and rational functions of d
+approximate Q badly near d = 0.
 """
 
 import functools
@@ -17,10 +18,11 @@ from integrals.reference import restricted
 from shading.types import Scalar
 
 AXES = restricted(Q.axes, density=(0.0, 0.5))
-# ln d is taken of at least this; its factor d² is far below rounding there.
+# The logarithm is that of max(d, this), so that it is finite at d = 0. Its factor d² makes the
+# difference far smaller than rounding.
 LEAST_DENSITY = 1e-30
 
-# What surrounds the polynomial and the poles r, and the variable that they are of.
+# The equation of each structure. r is the polynomial with the poles, a function of d or of √d.
 STRUCTURES = {
     "free": "r(d)",
     "one": "1 + d r(d)",
@@ -41,9 +43,10 @@ def _surround(structure: str, d: Array, r) -> Array:
 
 @functools.cache
 def pole_q(*, structure: str, terms: int, poles: int) -> Form:
-    """Return the form of Q with a polynomial of `terms` and as many `poles` aₖ/(bₖ + x).
+    """Return the form of Q with a structure of STRUCTURES.
 
-    Raises ValueError for a form of neither.
+    r is the sum of a polynomial with `terms` coefficients and of `poles` poles aₖ/(bₖ + x), where x
+    is d or √d. Raises ValueError if both numbers are 0.
     """
     if terms + poles == 0:
         raise ValueError("terms + poles = 0: at least one is needed")
@@ -61,7 +64,8 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
         starts=pole_starts(terms, poles),
         shape={"structure": structure, "terms": terms, "poles": poles},
         proofs=Proofs(positive=lambda c, _: least_offset(c, terms, poles)),
-        # Some are linear, but the solver's tolerance of 1e-7 hides their errors: no bound is sound.
+        # Forms without poles are linear. But their errors can be as small as the tolerance of the
+        # linear programs, 1e-7, so that a lower bound found by these would not be reliable.
         has_least_error=False,
     )
 

@@ -1,4 +1,4 @@
-"""R: average of P_s over lights."""
+"""The quantity R: the average of P_s over lights."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ from quantities.fuzz.r_forms import VARIABLES, candidates, monomial_r
 from quantities.fuzz.supplement import RATIONAL_R
 from quantities.problem import AverageHint, AxisHint, PlotHints, Problem
 
-# The explorer averages P_s over lights with so many nodes an angle, by the rule of
-# `integrals.fuzz.r.average_over_lights`. tests/shadefit/test_explorer.py bounds its error.
+# The explorer averages P_s over lights by the rule of `integrals.fuzz.r.average_over_lights` with
+# this many nodes an angle. tests/shadefit/test_explorer.py bounds its error.
 _NODES = 48
 _COSINES, _WEIGHTS = gauss_legendre(_NODES, 0.0, 1.0)
 _POLAR_RULE = np.arccos(_COSINES), 2 * _WEIGHTS * _COSINES

@@ -1,4 +1,7 @@
-"""Forms of R: rational in one variable of α and in cos²θf, for t and −t are one fibre."""
+"""Forms of R: rational functions of α and of cos²θf.
+
+The square makes them even in cos θf, as R is, because t and −t are the same fibre.
+"""
 
 import functools
 import itertools
@@ -14,13 +17,14 @@ from integrals import R
 from integrals.reference import restricted
 from shading.types import Scalar
 
-# A variable's symbol, and the variable as a function of α and b = 1 − α.
+# The choices of the variable z: its symbol, and z as a function of α and b = 1 − α. All are 0 at
+# α = 1.
 VARIABLES = {
     "1-alpha": ("1 − α", lambda alpha, b: b),
     "1-alpha^2": ("1 − α²", lambda alpha, b: 1 - alpha * alpha),
     "(1-alpha)/(1+alpha)": ("(1 − α)/(1 + α)", lambda alpha, b: b / (1 + alpha)),
 }
-# Monomials zⁱyʲ that the numerator and the denominator of a search choose from.
+# The exponents (i, j) of the monomials zⁱyʲ from which a search chooses.
 NUMERATOR = tuple((i, j) for i in range(4) for j in range(4))
 DENOMINATOR = tuple((i, j) for i in range(3) for j in range(3) if i + j)
 
@@ -29,11 +33,11 @@ DENOMINATOR = tuple((i, j) for i in range(3) for j in range(3) if i + j)
 def monomial_r(
     *, variable: str, numerator: Exponents, denominator: Exponents, least_alpha: float
 ) -> Form:
-    """Return R̃ = ½ + z N(z, y)/D(z, y), y = cos²θf, for α ≥ `least_alpha`.
+    """Return R̃ = ½ + z N(z, y)/D(z, y), with z of VARIABLES and y = cos²θf, for α ≥ `least_alpha`.
 
-    `numerator` and `denominator` hold the exponents (i, j) of the monomials zⁱyʲ with a
-    coefficient; D has 1 besides. R = ½ at α = 1 is exact. The coefficients are the numerator's,
-    then the denominator's.
+    `numerator` and `denominator` hold the exponents (i, j) of the monomials zⁱyʲ that have a
+    coefficient. D also has the constant 1. R̃ = ½ at α = 1, which is exact. The coefficients of N
+    come first, then those of D.
     """
     symbol, z_of = VARIABLES[variable]
     split = len(numerator)
@@ -71,7 +75,10 @@ def monomial_r(
 
 
 def candidates(least_alpha: float, known: tuple[Form, ...] = ()) -> Iterator[Form]:
-    """Yield the `known` forms, then forms of few monomials to many, in each of the variables."""
+    """Yield the forms that a search tries: the `known` ones, then some of each variable.
+
+    In each variable, the number of monomials grows from form to form.
+    """
     grown = (
         monomial_r(variable=variable, numerator=above, denominator=below, least_alpha=least_alpha)
         for variable in VARIABLES

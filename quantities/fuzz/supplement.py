@@ -16,12 +16,12 @@ from integrals.reference import restricted
 from quantities.fuzz.lights import cosines_of_light, light_directions
 from shading.types import Scalar
 
-# The terms of the vector x of Eq. (2) and (5), in the order of Listing 1.
+# The elements of the vector x of Eq. (2) and (5), in the order of Listing 1.
 TERMS = ["β", "γ", "δ", "β²", "γ²", "βγ", "βδ", "β³", "γ³", "δ³", "β²γ", "β²δ", "βγ²"]
-# Eq. (5) takes the first of them in its denominator.
+# The denominator of Eq. (5) takes only this many of them, the first ones.
 _BELOW_R = 3
-# 48² = 2,304 lights a material; with 96² the limit's rms changes by less than 1e-6
-# (tests/fitting/test_separable.py).
+# P_s is fitted with 48² = 2,304 lights for each material. The least rms error that Eq. (1) can have
+# changes by less than 1e-6 with 96² lights (tests/fitting/test_separable.py).
 LIGHTS_PER_ANGLE = 48
 
 
@@ -49,7 +49,7 @@ def direction_basis(cos_un: Scalar, cos_ut: Scalar) -> Array:
 
 
 def _combined(c, cos_un: Scalar, cos_ut: Scalar) -> Array:
-    """Combine the functions of direction with a material's c₀ … c₅ (Eq. 1)."""
+    """Return P_s by Eq. (1): the functions of direction, weighted by a material's c₀ … c₅."""
     return jnp.asarray(c) @ direction_basis(cos_un, cos_ut)
 
 

@@ -1,4 +1,4 @@
-"""r(k): the largest factor of the velvet phase function that creates no energy."""
+"""The quantity r(k): the largest factor of the velvet phase function that creates no energy."""
 
 import integrals
 from integrals.fuzz.velvet import normalisation

@@ -1,8 +1,9 @@
-"""The form of r(k), fitted from below: nowhere above the exact factor, and proven not to be.
+"""The form r̃ of r(k), which is proven not to be above the exact factor, so it creates no energy.
 
-r = s/B(x) with x = −k, s = √(1 − x²) and B smooth, B(0) = 1. The form is s/B̃ with an upper bound
-B̃ = 1 + x (c₀ + c₁x + c₂(1 − s)) of B. Both the loss of r and the bound are linear in the
-coefficients: the fit is a linear program.
+r = s/B(x) with x = −k, s = √(1 − x²), and a smooth function B with B(0) = 1. The form is r̃ = s/B̃
+with B̃ = 1 + x (c₀ + c₁x + c₂(1 − s)), which has to be an upper bound of B. The condition B̃ ≥ B and
+the relative loss (r − r̃)/r̃ = B̃/B − 1 are linear in the coefficients, so the fit is a linear
+program.
 """
 
 import jax
@@ -23,11 +24,13 @@ from programs.functions import Function, Parameter
 from programs.tracing.tracer import trace
 from shading.types import Scalar
 
-# What (B̃ − B)/x is kept above between the nodes: far more than any rounding, far less than r̃ loses.
+# (B̃ − B)/x is made at least this at the points between the nodes. It is far larger than rounding
+# errors, and far smaller than the loss of r̃.
 MARGIN = 1e-6
-# Where between the nodes the fit is lifted by; the certificate then has the last word.
+# The number of these points. That B̃ ≥ B between them too is proven by the certificate.
 _LIFT_NODES = 4097
-# The closed form of B cancels towards x = 0: below sin φ = ¼ its power series is bounded instead.
+# The closed form of B loses digits by cancellation as x → 0. For x = sin φ < ¼ the proof uses the
+# power series of B.
 _SERIES_LIMIT = float(np.arcsin(0.25))
 _SERIES_TERMS = 24
 
@@ -44,9 +47,10 @@ def _value(c, asymmetry: Scalar) -> Array:
 
 
 def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
-    """Fit r̃ ≤ r on a grid of k, the largest relative loss (r − r̃)/r̃ least. Returns (3,).
+    """Return the coefficients (3,) that minimise the largest relative loss (r − r̃)/r̃ with r̃ ≤ r.
 
-    A linear program on the nodes; then c₀ is raised until r̃ is below r between them as well.
+    A linear program does so at the nodes of a grid of k. Then c₀ is raised until r̃ is below r
+    between the nodes too.
     """
     k = grid.points[:, 0]
     keep = k < 0
@@ -71,10 +75,11 @@ def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
 
 
 def certify_conservative(fitted: FittedForm) -> DenominatorBound:
-    """Bound (B̃ − B)/x from below for all k of the form's domain: positive means r̃ ≤ r.
+    """Bound (B̃ − B)/x from below on the form's domain. A positive bound proves r̃ ≤ r.
 
-    r̃ = s/B̃ and r = s/B; at k = 0 both are one. In φ = arcsin x, s = cos φ, so that B is made of
-    sines, cosines and a division; towards φ = 0, of its power series with all that is left out.
+    At k = 0 both r̃ and r are 1. The variable is φ = arcsin x. In it s = cos φ, so that B consists
+    of sines, cosines and a division, which have interval versions. Near φ = 0, B is replaced by an
+    upper bound: its power series, with a bound of the terms that are left out.
     """
     end = float(np.arcsin(-fitted.axes[0].lower))
     pieces = [(_near_zero, 0.0, min(_SERIES_LIMIT, end)), (_beyond, min(_SERIES_LIMIT, end), end)]
@@ -97,15 +102,16 @@ def _terms(x: np.ndarray) -> np.ndarray:
 
 
 def _room(fitted: FittedForm, rest, phi):
-    """Return (B̃ − B)/x at x = sin φ; `rest` is a function that returns (B − 1)/x."""
+    """Return (B̃ − B)/x at x = sin φ. `rest` is a function that returns (B − 1)/x."""
     c, x, s = fitted.constants, jnp.sin(phi), jnp.cos(phi)
     return c[0] + c[1] * x + c[2] * (1 - s) - rest(phi, x, s)
 
 
 def _near_zero(_, x, s):
-    """Bound (B − 1)/x from above by its power series: B = s³ Σ aₙxⁿ and a₀ = 1.
+    """Return an upper bound of (B − 1)/x for x ≤ sin _SERIES_LIMIT, by the power series of B.
 
-    aₙ₊₁/aₙ < (n + 2)/(n + 1), so that what is left out is below a geometric series.
+    B = s³ Σ aₙxⁿ with a₀ = 1 (`series_coefficients`). Because aₙ₊₁/aₙ < (n + 2)/(n + 1), the terms
+    that are left out are bounded by a geometric series.
     """
     a, limit = series_coefficients(_SERIES_TERMS + 1), np.sin(_SERIES_LIMIT)
     last = len(a) - 1

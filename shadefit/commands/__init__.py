@@ -1,4 +1,5 @@
-"""The commands of `shadefit`, a file each: options and help, and what is done with them.
+"""The commands of `shadefit`: each has a file with its options, its help, and what it does.
 
-What a command works with is imported when it runs, so that help and completion do not wait for JAX.
+The modules that a command needs are imported when it runs, so that help and completion do not wait
+for JAX.
 """

@@ -1,4 +1,4 @@
-"""`shadefit ambient`: the errors of the ambient model, as tables and a picture."""
+"""`shadefit ambient`: measure the errors of the ambient model; print tables and draw a picture."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +12,10 @@ def ambient(
     out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("docs/figures"),
     json: Json = False,
 ) -> None:
-    """Measure the ambient model against the integral of the whole BRDF, and its energy."""
+    """Measure the errors of the ambient model, and its largest radiance in uniform light.
+
+    Exact radiances are integrals of the whole BRDF.
+    """
     run(out, json)
 
 

@@ -1,4 +1,4 @@
-"""`shadefit compare`: tables beside the published ones, each against the exact values."""
+"""`shadefit compare`: print the errors of tables beside those of the published ones."""
 
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from coefficients.compare import Comparison
 
-# Up to this many coefficients are printed; --json has them all.
+# Coefficients are printed only if there are at most this many. --json prints them all.
 PRINTED_COEFFICIENTS = 17
 
 
@@ -19,13 +19,16 @@ def compare(
     tables: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Names or paths; by default the refits of what is published.",
+            help="Names or paths of tables; by default the refits of all published tables.",
             autocompletion=complete_table,
         ),
     ] = None,
     json: Json = False,
 ) -> None:
-    """Compare tables with the published ones, each against the exact integral."""
+    """Compare the errors of tables with those of the published tables.
+
+    Errors are measured against the exact integral, at the same points for both.
+    """
     run(tables or [], json)
 
 
@@ -45,7 +48,7 @@ def run(names: list[str], json: bool) -> None:
 
 
 def contestants(entry: "Entry") -> "list[tuple[str, Entry]]":
-    """Return the published tables of an entry's quantity and the entry, by label."""
+    """Return the entries to compare, with labels: the published tables of the quantity, then it."""
     from coefficients.catalogue import printed, published
 
     entry.require_table()

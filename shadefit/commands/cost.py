@@ -1,4 +1,4 @@
-"""`shadefit cost`: operations by kind, and evaluations a second, beside the closed form."""
+"""`shadefit cost`: count operations by kind, and measure evaluations per second."""
 
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,11 +21,15 @@ def cost(
         ),
     ],
     throughput: Annotated[
-        bool, typer.Option("--throughput", help="Measure compiled C against JAX.")
+        bool,
+        typer.Option("--throughput", help="Measure evaluations per second, by compiled C and JAX."),
     ] = False,
     json: Json = False,
 ) -> None:
-    """Count the operations of exported functions by kind, beside the closed form's."""
+    """Count the operations of a table's exported functions, by kind.
+
+    The closed form is counted too if the table's form has two stages (ps).
+    """
     from coefficients.catalogue import resolve
     from coefficients.exported_code import closed_form_beside, costs
     from programs import KINDS, measure_throughput

@@ -1,4 +1,4 @@
-"""`shadefit evaluate`: one exact value by every leg, and what the tables make of it."""
+"""`shadefit evaluate`: evaluate a quantity at one point, by every exact method and by tables."""
 
 import functools
 import math
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from quantities import Problem
 
 MAX_SAMPLES = 1 << 24
-# The options of axes depend on the quantity: they are read by `axis_values`.
+# The options for the axes differ by quantity. Typer passes them on, and `axis_values` reads them.
 SETTINGS = {"ignore_unknown_options": True}
 
 
@@ -25,28 +25,32 @@ def evaluate(
     arguments: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Each argument of the integral as an option.", metavar="--NAME VALUE ..."
+            help="The arguments of the integral, each as an option.", metavar="--NAME VALUE ..."
         ),
     ] = None,
     table: Annotated[
         list[str] | None,
         typer.Option(
-            help="A further table's name or path; may be given again.",
+            help="Name or path of a further table; the option may be given several times.",
             autocompletion=complete_table,
         ),
     ] = None,
-    samples: Annotated[int, typer.Option(help="Monte Carlo samples.")] = 1 << 16,
+    samples: Annotated[int, typer.Option(help="Number of Monte Carlo samples.")] = 1 << 16,
     sequence: Annotated[
-        Literal["random", "sobol"], typer.Option(help="Monte Carlo points.")
+        Literal["random", "sobol"], typer.Option(help="Kind of the Monte Carlo points.")
     ] = "random",
-    seed: Annotated[int, typer.Option(help="Monte Carlo seed.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo points.")] = 0,
     json: Json = False,
 ) -> None:
-    """Evaluate an integral by every leg, by the published and refitted tables, and by others.
+    """Evaluate an integral at one point, by all exact methods and by tables.
 
-    Each argument of the integral is an option: --alpha, --theta-f, --theta-u and --phi of ps;
-    --density and --cos-v of g; --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
-    Angles are radians unless 'deg' follows: 45deg, 0.785, 0.785rad.
+    The exact methods are closed form, quadrature and Monte Carlo, if they exist.
+    The tables are the published one, the refitted one, and those of --table.
+
+    Each argument of the integral is an option:
+    --alpha, --theta-f, --theta-u and --phi of ps; --density and --cos-v of g;
+    --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
+    Angles are in radians, or in degrees with 'deg': 0.785, 0.785rad, 45deg.
     """
     run(integral, arguments or [], table or [], samples, sequence, seed, json)
 
@@ -60,9 +64,10 @@ def run(
     seed: int,
     json: bool,
 ) -> None:
-    """Evaluate the quantity `name` at the values of the options `given`.
+    """Evaluate the quantity `name` at the point that the options `given` state.
 
-    Beside the legs stand the published table, the refitted one, and those that `extra` names.
+    Prints the values of every leg, of the published table, of the refitted one, and of the tables
+    that `extra` names.
     """
     from quantities import problems
     from shadefit.terminal import place, print_json, print_table
@@ -108,10 +113,11 @@ def run(
 
 
 def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:
-    """Read the options of a quantity's axes, such as ['--alpha', '0.35', '--phi=90deg'].
+    """Read the options for a quantity's axes, such as ['--alpha', '0.35', '--phi=90deg'].
 
-    Returns the values by the axes' names, in order. Raises ValueError for an option that is missing
-    or not the quantity's, and for a value outside the domain of its axis.
+    Returns the values by the names of the axes, in the order of the axes. Raises ValueError for an
+    option that is missing or that the quantity does not have, and for a value outside the domain of
+    its axis.
     """
     flags = {flag_of(name): axis for axis in owner.axes for name in (axis.name, axis.alias) if name}
     wanted = ", ".join(flag_of(axis.name) for axis in owner.axes)
@@ -147,14 +153,17 @@ def _number(flag: str, axis: "Axis", text: str) -> float:
 def _compiled(
     reference: "Reference", leg: str, options: tuple[tuple[str, Any], ...]
 ) -> "Callable[..., Estimate]":
-    """Compile a leg whole: operation by operation it would take several times as long."""
+    """Compile a leg as a whole. JAX would need several times as long one operation at a time."""
     import jax
 
     return jax.jit(functools.partial(reference.legs[leg], **dict(options)))
 
 
 def _tables(owner: "Problem", extra: list[str]) -> "dict[str, FittedForm]":
-    """Return the tables to show by label; those that `extra` names have to be of the quantity."""
+    """Return the fitted forms of the tables to show, by label.
+
+    Raises ValueError if a table that `extra` names belongs to another quantity.
+    """
     from coefficients.catalogue import published, refitted, resolve
 
     known = {"published": published(owner), "refitted": refitted(owner)}

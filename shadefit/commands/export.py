@@ -1,4 +1,4 @@
-"""`shadefit export`: a table as JSON, or as shader code headed by what it is worth."""
+"""`shadefit export`: write a table as JSON, or as shader code with a header that states errors."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,36 +12,39 @@ def export(
     table: Annotated[
         str,
         typer.Argument(
-            help="A table's name or path; with --to, also exact/NAME.",
+            help="Name or path of a table; with --to also exact/NAME, a closed form.",
             autocompletion=complete_shader,
         ),
     ],
     to: Annotated[
         str | None,
         typer.Option(
-            help="Language to write as code; by default JSON.",
+            help="Language of the code; without this option JSON is written.",
             metavar="LANG",
             autocompletion=complete_language,
         ),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="File; by default standard output.")
+        Path | None,
+        typer.Option("-o", "--output", help="File to write; by default standard output."),
     ] = None,
     precision: Annotated[
         str | None,
-        typer.Option(help="half, float or double; by default float (JavaScript: double)."),
+        typer.Option(help="half, float or double; by default float, for JavaScript double."),
     ] = None,
     name: Annotated[
-        str | None, typer.Option(help="Name of the function; by default the paper's.")
+        str | None,
+        typer.Option(help="Name of the function; by default that of the paper's listing."),
     ] = None,
     constants: Annotated[
         Literal["inline", "table"] | None,
-        typer.Option(help="Where the constants stand; by default inline."),
+        typer.Option(help="Where the code has its constants; by default inline."),
     ] = None,
 ) -> None:
-    """Write a table's validated JSON, or its functions as code in a language.
+    """Write a table as JSON, or as code in a language.
 
-    The code is run where its compiler is here, and headed by its measured error.
+    The code is run if its compiler is installed. Its header states the error
+    that was measured.
     """
     from coefficients.catalogue import resolve
     from coefficients.exported_code import source_file

@@ -1,4 +1,4 @@
-"""`shadefit figures`: the supplement's figures and ours."""
+"""`shadefit figures`: draw the figures of the supplement, and further pictures."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +12,7 @@ def figures(
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
 ) -> None:
-    """Draw the supplement's figures and ours, each as PNG and SVG."""
+    """Draw pictures as PNG and SVG: the figures of the supplement, errors, and costs."""
     from coefficients.files import require_writable, write_whole_bytes
     from shadefit.figures import pictures, render
 

@@ -1,4 +1,4 @@
-"""`shadefit list`: the tables that have a name."""
+"""`shadefit list`: list the packaged tables."""
 
 from typing import TYPE_CHECKING
 
@@ -7,12 +7,12 @@ from shadefit.commands.options import Json
 if TYPE_CHECKING:
     from coefficients.table import Table
 
-# Longer equations do not fit a column: --json has them.
+# A longer equation does not fit into a column. --json prints it.
 _LONGEST = 20
 
 
 def list_tables(json: Json = False) -> None:
-    """List the tables that have a name."""
+    """List the tables that come with shadefit, with their names, forms and errors."""
     from coefficients.catalogue import entries
     from shadefit.terminal import print_json, print_table
 

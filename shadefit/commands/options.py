@@ -15,26 +15,35 @@ _ANGLE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|rad
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")]
 
+# search has its own defaults (linf, float32); refit takes those of each table.
 Norm = Annotated[
     goal.Norm | None,
-    typer.Option(help="Least squares or least largest error; by default the table's own."),
+    typer.Option(
+        help="l2 minimises squared errors, linf the largest error; "
+        "by default refit does as the table did, search takes linf."
+    ),
 ]
 Side = Annotated[
     goal.Side | None,
-    typer.Option(help="With linf, values never above (or below) the exact ones."),
+    typer.Option(help="With linf: allow no values above (or below) the exact ones."),
 ]
 Rounding = Annotated[
     goal.Rounding | None,
-    typer.Option(help="Precision that coefficients are rounded to, the others refitted in turn."),
+    typer.Option(
+        help="Precision to round coefficients to, in groups; the others are refitted after each."
+    ),
 ]
-Relative = Annotated[bool, typer.Option("--relative", help="Make relative errors small.")]
+Relative = Annotated[
+    bool, typer.Option("--relative", help="Minimise relative errors instead of absolute ones.")
+]
 Bounded = Annotated[
-    bool, typer.Option("--bounded", help="With linf, values between 0 and 1, and proven to be.")
+    bool,
+    typer.Option("--bounded", help="With linf: keep all values between 0 and 1, and prove it."),
 ]
 
 
 def goal_fields(norm, side, rounding, relative: bool, bounded: bool) -> dict[str, Any]:
-    """Return the fields of a goal that options were given for."""
+    """Return the fields of a goal whose options were given."""
     given = {
         "norm": norm,
         "side": side,
@@ -53,19 +62,20 @@ def angle(text: str) -> float:
             f"{text!r} is no angle: allowed is a number with 'deg' or 'rad' behind it, as in 45deg"
         )
     number, unit = match.groups()
-    # 90deg is π/2 to the last bit, so that the ends of a domain can be named.
+    # math.radians(90) equals math.pi / 2 exactly, so that 90deg is not outside a domain up to π/2.
     return math.radians(float(number)) if unit in ("deg", "°") else float(number)
 
 
 def flag_of(name: str) -> str:
-    """Return the option that an axis is given by: '--theta-f' for theta_f."""
+    """Return the option for an axis, such as '--theta-f' for theta_f."""
     return f"--{name.replace('_', '-')}"
 
 
 def checked(axis: "Axis", value: float) -> float:
-    """Return an option's value; raise ValueError, by the option's name, outside the axis's domain.
+    """Return an option's value. Raise ValueError if it is outside the domain of the axis.
 
-    The domain of an angle is told in degrees too, so that who left 'deg' out sees it.
+    The message names the option. For an angle it states the domain in degrees too, so that a user
+    who forgot 'deg' sees the mistake.
     """
     try:
         return axis.check(value)

@@ -1,4 +1,4 @@
-"""`shadefit refit`: refit forms to exact values, the published ones or others, and write tables."""
+"""`shadefit refit`: fit published forms, or those of best tables, to exact values; write tables."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from quantities import Problem
 
 ALL = "all"
-# Compilation holds one core at a time: a second fit fills the other.
+# Two fits run at a time: while JAX compiles one on one core, the other uses a second core.
 WORKERS = 2
 
 
@@ -31,20 +31,22 @@ def refit(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            help="ps, g, q, r, velvet or all (the default); or best/NAME.",
+            help="ps, g, q, r, velvet, all of these (the default), or best/NAME.",
             autocompletion=complete_quantity,
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for NAME.json; by default the table is replaced."),
+        typer.Option(help="Folder for NAME.json; by default the packaged table is replaced."),
     ] = None,
-    grid: Annotated[int, typer.Option(help="Nodes an axis, 9 to 129, for the paper's forms.")] = 65,
+    grid: Annotated[
+        int, typer.Option(help="Nodes along each axis of the grid, 9 to 129; not for best/NAME.")
+    ] = 65,
     weight: Annotated[
         str,
         typer.Option(
-            help="Measure of light directions in the fit of ps: uniform, solid-angle or cosine; "
-            "the others have none."
+            help="Weight of light directions in the fit of ps: uniform in angles, solid-angle, or "
+            "cosine (projected solid angle). Other quantities have no such weight."
         ),
     ] = "uniform",
     norm: Norm = None,
@@ -54,7 +56,7 @@ def refit(
     bounded: Bounded = False,
     json: Json = False,
 ) -> None:
-    """Refit forms to exact values, the paper's or a best table's, and write the tables."""
+    """Fit the forms of the paper, or those of best tables, to exact values, and write tables."""
     given = goal_fields(norm, side, rounding, relative, bounded)
     run(names or [], out, grid, weight, given, json)
 
@@ -67,10 +69,10 @@ def run(
     given: dict[str, Any],
     as_json: bool,
 ) -> None:
-    """Refit, and write `out`/NAME.json for each; nothing is written unless every fit holds.
+    """Refit tables, and write `out`/NAME.json for each. If any fit fails, nothing is written.
 
-    `out` None: tables replace those that their names stand for. `given` holds the fields of a goal
-    that differ from the table's own.
+    If `out` is None, the packaged tables are replaced. `given` has the fields of the goal that
+    replace those of the table's own goal.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -118,11 +120,16 @@ def run(
 
 
 def selection(names: list[str]) -> "list[Problem | Entry]":
-    """Return what is meant, quantities in their own order; 'all' or nothing stands for those."""
+    """Return the quantities and best tables with these names.
+
+    Quantities come first, in the order of the registry. 'all' stands for all of them; no name, for
+    those of the user's problem files or, if there are none, for all.
+    """
     from coefficients.catalogue import names_of_best, resolve
     from quantities import problems
 
     every, best = problems(), names_of_best()
+    names = names or [owner.name for owner in every.values() if not owner.topic]
     unknown = [name for name in names if name not in (*every, ALL, *best)]
     if unknown:
         allowed = ", ".join((*every, ALL, *best))
@@ -143,7 +150,7 @@ def _require_measure(weight: str) -> None:
 
 
 def _has_own_goal(each: "Problem | Entry") -> bool:
-    """Tell whether a quantity's default form is fitted to a goal that cannot be chosen."""
+    """Return whether a quantity's default form has a solver with a fixed goal of its own."""
     from fitting.goal import LEAST_SQUARES
     from quantities import Problem
 
@@ -152,9 +159,11 @@ def _has_own_goal(each: "Problem | Entry") -> bool:
 
 
 def _own_folder(name: str) -> Path:
-    """Return the folder that a table's name is kept in, by a short path where there is one."""
-    from coefficients.catalogue import path_of
+    """Return the folder of a packaged table, relative to the working directory if it is inside."""
+    from coefficients.catalogue import is_kept, path_of
 
+    if not is_kept(name):
+        raise ValueError(f"{name} has no folder of its own: give one by --out")
     folder, here = path_of(name).parent, Path.cwd()
     return folder.relative_to(here) if folder.is_relative_to(here) else folder
 
@@ -183,7 +192,7 @@ def _table(
 
 
 def _options(given: dict[str, Any]) -> str:
-    """Write the options that a goal is asked for by."""
+    """Return the command-line options for the given fields of a goal, as text."""
     flags = {
         key: f" --{key}" if value is True else f" --{key} {value}" for key, value in given.items()
     }

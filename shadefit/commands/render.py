@@ -1,4 +1,4 @@
-"""`shadefit render`: a scene with exact functions and with tables, side by side, as PNG and EXR."""
+"""`shadefit render`: render scenes with exact functions and with tables, as PNG and EXR."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,34 +14,52 @@ if TYPE_CHECKING:
 
 def render(
     scenes: Annotated[
-        list[str] | None, typer.Argument(help="sphere, cloth; by default both.", metavar="SCENES")
+        list[str] | None,
+        typer.Argument(help="sphere or cloth; by default both.", metavar="SCENES"),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("build/render"),
     density: Annotated[float, typer.Option(help="Density of the layer, 0 to 0.5.")] = 0.2,
-    spread: Annotated[float, typer.Option(help="Spread of the lobe, (0, 1].")] = 0.2,
+    spread: Annotated[
+        float, typer.Option(help="Spread of the fibres' lobe, above 0, to 1: the square of α.")
+    ] = 0.2,
     tilt: Annotated[
         float, typer.Option(parser=angle, metavar="ANGLE", help="Polar angle of the fibres.")
     ] = "23deg",  # ty: ignore[invalid-parameter-default]
     fibers: Annotated[
-        str, typer.Option(help="Where they lean: even, crushed, or a PNG map of directions.")
+        str,
+        typer.Option(help="Where fibres lean: even, crushed, or a PNG file with a direction map."),
     ] = "crushed",
-    fiber: Annotated[str, typer.Option(help="Colour of the fibres.")] = "#ff6f9c",
-    base: Annotated[str, typer.Option(help="Colour of the base.")] = "#7a0f2b",
+    fiber: Annotated[str, typer.Option(help="Colour of the fibres, #rrggbb.")] = "#ff6f9c",
+    base: Annotated[str, typer.Option(help="Colour of the base, #rrggbb.")] = "#7a0f2b",
     sun: Annotated[float, typer.Option(help="Irradiance of the sun.")] = 7.0,
     sun_height: Annotated[
-        float, typer.Option(parser=angle, metavar="ANGLE", help="Above the horizon.")
+        float,
+        typer.Option(parser=angle, metavar="ANGLE", help="Angle of the sun above the horizon."),
     ] = "40deg",  # ty: ignore[invalid-parameter-default]
     sun_azimuth: Annotated[
-        float, typer.Option(parser=angle, metavar="ANGLE", help="From the right, anticlockwise.")
+        float,
+        typer.Option(
+            parser=angle,
+            metavar="ANGLE",
+            help="Azimuth of the sun, anticlockwise from the right of the image.",
+        ),
     ] = "215deg",  # ty: ignore[invalid-parameter-default]
     sky: Annotated[float, typer.Option(help="Radiance of the sky.")] = 1.2,
-    size: Annotated[int, typer.Option(help="Pixels an edge, 16 to 1024.")] = 256,
+    size: Annotated[
+        int, typer.Option(help="Width and height of an image in pixels, 16 to 1024.")
+    ] = 256,
     sweep: Annotated[
-        bool, typer.Option("--sweep", help="Draw the talk's sweeps instead: sweep.png.")
+        bool,
+        typer.Option(
+            "--sweep", help="Draw many densities, spreads and tilts, as in the talk: sweep.png."
+        ),
     ] = False,
     json: Json = False,
 ) -> None:
-    """Render velvet with exact functions and with tables, side by side: render.png, render.exr."""
+    """Render velvet with exact functions and with tables, side by side.
+
+    The files are render.png and render.exr.
+    """
     from shadefit.render.settings import Settings
 
     settings = Settings(
@@ -79,18 +97,18 @@ def check_settings(settings: "Settings") -> None:
     from integrals import PS, Axis
 
     domains = (
-        Axis("density", "d", "1", 0.0, 0.5, "density of the layer"),
-        Axis("spread", "", "1", 0.0, 1.0, "spread of the lobe", open_below=True),
-        Axis("tilt", "θf", "rad", 0.0, PS.axes[1].upper, "polar angle of the fibres"),
-        Axis("sun_height", "", "rad", 0.0, pi / 2, "height of the sun above the horizon"),
-        Axis("sun_azimuth", "", "rad", -2 * pi, 2 * pi, "the sun's azimuth from the right"),
-        Axis("sun", "", "1", 0.0, 1e3, "irradiance of the sun"),
-        Axis("sky", "", "1", 0.0, 1e3, "radiance of the sky"),
-        Axis("size", "", "1", 16.0, 1024.0, "pixels an edge"),
+        Axis("density", 0.0, 0.5, "d", meaning="density of the layer"),
+        Axis("spread", 0.0, 1.0, meaning="spread of the lobe", open_below=True),
+        Axis("tilt", 0.0, PS.axes[1].upper, "θf", "rad", "polar angle of the fibres"),
+        Axis("sun_height", 0.0, pi / 2, "", "rad", "height of the sun above the horizon"),
+        Axis("sun_azimuth", -2 * pi, 2 * pi, "", "rad", "the sun's azimuth from the right"),
+        Axis("sun", 0.0, 1e3, meaning="irradiance of the sun"),
+        Axis("sky", 0.0, 1e3, meaning="radiance of the sky"),
+        Axis("size", 16.0, 1024.0, meaning="pixels an edge"),
     )
     for axis in domains:
         checked(axis, float(getattr(settings, axis.name)))
-    # This reads the colours.
+    # Making the material reads the colours, and raises ValueError for one that cannot be read.
     _ = settings.material
 
 

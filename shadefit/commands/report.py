@@ -1,4 +1,4 @@
-"""`shadefit report`: one HTML file with the tables' worth, the figures and the explorer in it."""
+"""`shadefit report`: write one HTML file with tables of errors, all figures, and an explorer."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,9 +7,9 @@ import typer
 
 
 def report(
-    out: Annotated[Path, typer.Option(help="The HTML file.")] = Path("build/report.html"),
+    out: Annotated[Path, typer.Option(help="HTML file to write.")] = Path("build/report.html"),
 ) -> None:
-    """Write one HTML file: tables and their worth, figures, errata, and an explorer."""
+    """Write one HTML file: errors and costs of all tables, figures, errata, and an explorer."""
     from coefficients.files import require_writable_file, write_whole
     from shadefit.figures import pictures, render
     from shadefit.report.page import page

@@ -1,4 +1,4 @@
-"""`shadefit search`: families of forms, fitted one after the other, and the frontier among them."""
+"""`shadefit search`: fit many forms of a quantity, and find the best for each cost."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 def search(
     quantity: Annotated[str, typer.Argument(help="ps, g, q or r.", metavar="QUANTITY")],
     budget: Annotated[
-        int | None, typer.Option(help="Most operations a call (of P_s a direction).")
+        int | None,
+        typer.Option(help="Most operations that a call may have (for ps, a direction)."),
     ] = None,
     max_error: Annotated[
-        float | None, typer.Option(help="Print only forms with no larger error.")
+        float | None, typer.Option(help="Print only forms whose largest error is at most this.")
     ] = None,
     least_alpha: Annotated[
-        float, typer.Option(help="Lower end of α in the fits of ps and r.")
+        float, typer.Option(help="Least α of the domain of the forms of ps and r.")
     ] = 0.15,
     norm: Norm = None,
     side: Side = None,
@@ -37,13 +38,14 @@ def search(
     relative: Relative = False,
     bounded: Bounded = False,
     out: Annotated[
-        Path, typer.Option(help="Folder for tables and plot; what is there is not fitted again.")
+        Path,
+        typer.Option(help="Folder for tables and the plot; forms with a table are not refitted."),
     ] = Path("search"),
     json: Json = False,
 ) -> None:
-    """Fit families of forms, and print and plot operations against the largest error.
+    """Fit many forms of a quantity. Print and plot their operations and largest errors.
 
-    By default the largest error is made least, with coefficients in float32.
+    By default the largest error is minimised, and coefficients are float32.
     """
     from coefficients.files import require_writable, write_whole_bytes
     from coefficients.search import Search
@@ -55,7 +57,12 @@ def search(
     fields: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
     fields |= goal_fields(norm, side, rounding, relative, bounded)
     goal = Goal(**fields)
-    known = {name: each for name, each in problems().items() if each.candidates is not None}
+    # A quantity with a single form has nothing to search among.
+    known = {
+        name: each
+        for name, each in problems().items()
+        if each.candidates is not None or len(each.single_forms) > 1
+    }
     if quantity not in known:
         raise ValueError(f"no forms of {quantity!r} are known: allowed are {', '.join(known)}")
     if budget is not None and budget < 1:

@@ -1,4 +1,4 @@
-"""`shadefit verify`: exported code compiled, run and compared, a row a language."""
+"""`shadefit verify`: compile and run exported code, and compare it with exact values."""
 
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,20 +14,25 @@ if TYPE_CHECKING:
 def verify(
     tables: Annotated[
         list[str],
-        typer.Argument(help="Tables' names or paths, exact/NAME.", autocompletion=complete_shader),
+        typer.Argument(
+            help="Names or paths of tables, or exact/NAME, a closed form.",
+            autocompletion=complete_shader,
+        ),
     ],
     to: Annotated[
-        str, typer.Option(help="Language, or all.", autocompletion=complete_language)
+        str,
+        typer.Option(help="Language of the code, or all.", autocompletion=complete_language),
     ] = "all",
     precision: Annotated[
         str | None,
-        typer.Option(help="half, float, double or all; by default float (JavaScript: double)."),
+        typer.Option(help="half, float, double or all; by default float, for JavaScript double."),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Compile and run exported code, and compare it with its form and the exact integral.
+    """Compile and run exported code. Compare it with its form and with the exact integral.
 
-    Exit status 1 if any language failed. A compiler that is not here is 'not checked'.
+    The exit status is 1 if any language failed. A language whose compiler
+    is not installed is 'not checked'.
     """
     from dataclasses import asdict
 
@@ -59,10 +64,10 @@ def verify(
 
 
 def _precisions(languages: list[str], precision: str | None) -> dict[str, list[str]]:
-    """Return the languages to check in each precision.
+    """Return the languages to check, by precision.
 
-    One language must have the precision that is asked for; of all, those that do not have it are
-    reported as not checked.
+    Raises ValueError if a single language does not have the precision that is asked for. If all
+    languages are checked, those that do not have it are reported as not checked.
     """
     from programs import PRECISIONS, language, precision_of
 

@@ -59,10 +59,6 @@ def test_a_table_of_another_form_is_refused(name):
 G_ARGUMENTS = data_of("published/g")["arguments"]
 G_NAMES = RATIONAL_G.coefficient_names
 CONTRADICTIONS = {
-    "a weight that the quantity does not have": (
-        {"weight": "cosine"},
-        r"gives the weight as 'cosine', form 'rational-g' has \['uniform'\]",
-    ),
     "a unit": (
         {"arguments": [{**G_ARGUMENTS[0], "unit": "rad"}, G_ARGUMENTS[1]]},
         "the unit of density as 'rad', form 'rational-g' has '1'",

@@ -84,7 +84,7 @@ def test_a_traced_form_is_a_program_of_the_axes():
 
 def test_a_function_of_other_axes_can_be_traced_for_proofs():
     fitted = TWO_STAGES.fitted(ROWS)
-    square = Axis("square", "y²", "1", 0.0, 4.0, "")
+    square = Axis("square", 0.0, 4.0, "y²")
     constants = fitted.constants
 
     def both(x, y2):

@@ -8,8 +8,8 @@ from integrals import Axis
 from quantities.fuzz.supplement import RATIONAL_G
 
 BOX = (
-    Axis("x", "x", "1", -1.0, 2.0, "an axis"),
-    Axis("y", "y", "rad", 0.5, 0.75, "another"),
+    Axis("x", -1.0, 2.0, meaning="an axis"),
+    Axis("y", 0.5, 0.75, "y", "rad", "another"),
 )
 ROUNDING = 1e-14
 

@@ -8,8 +8,8 @@ from fitting import Form, Stage
 from integrals import Axis, Estimate, Reference, Sampling
 
 AXES = (
-    Axis("x", "x", "1", 0.0, 1.0, "the first argument"),
-    Axis("y", "y", "1", -1.0, 2.0, "the second argument"),
+    Axis("x", 0.0, 1.0, meaning="the first argument"),
+    Axis("y", -1.0, 2.0, meaning="the second argument"),
 )
 
 

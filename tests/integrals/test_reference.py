@@ -127,14 +127,14 @@ def test_missing_leg_is_none():
     assert list(REFERENCES["r"].legs) == ["quadrature", "monte_carlo"]
 
 
-HALF_OPEN = Axis("alpha", "α", "1", 0.0, 1.0, "", open_below=True)
-UNBOUNDED = Axis("density", "d", "1", 0.0, np.inf, "")
+HALF_OPEN = Axis("alpha", 0.0, 1.0, "α", open_below=True)
+UNBOUNDED = Axis("density", 0.0, np.inf, "d")
 
 
 def test_domain_is_written_as_an_interval():
     assert HALF_OPEN.domain == "(0, 1]"
     assert UNBOUNDED.domain == "[0, ∞)"
-    assert Axis("theta", "θ", "rad", 0.0, RIGHT, "").domain == "[0, 1.5708]"
+    assert Axis("theta", 0.0, RIGHT, "θ", "rad", "").domain == "[0, 1.5708]"
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ ENDS = [(0.001, 0.5), (0.05, 1.0), (0.1, 0.7), (1 / 3, 1e5), (3e-7, RIGHT)]
 @pytest.mark.parametrize("scale", ["linear", "logarithmic", "square"])
 @pytest.mark.parametrize(("lower", "upper"), ENDS)
 def test_place_maps_fractions_to_the_domain_with_exact_ends(scale, lower, upper):
-    axis = Axis("x", "x", "1", lower, upper, "", scale=scale)
+    axis = Axis("x", lower, upper, scale=scale)
     ends = axis.place(np.array([0.0, 1.0]))
     np.testing.assert_array_equal(ends, [lower, upper])
     near = axis.place(np.array([0.0, 5e-324, 1e-16, 0.5, np.nextafter(1, 0), 1.0]))
@@ -181,7 +181,7 @@ def test_place_maps_fractions_to_the_domain_with_exact_ends(scale, lower, upper)
 
 def test_place_follows_the_scale():
     fractions = np.array([0.25, 0.5, 0.75])
-    axis = functools.partial(Axis, "x", "x", "1", 0.01, 100.0, "")
+    axis = functools.partial(Axis, "x", 0.01, 100.0)
     np.testing.assert_allclose(axis().place(fractions), [25.0075, 50.005, 75.0025], rtol=1e-15)
     logarithmic = axis(scale="logarithmic").place(fractions)
     np.testing.assert_allclose(logarithmic, [0.1, 1.0, 10.0], rtol=1e-14)
@@ -214,7 +214,7 @@ def test_aliases_are_short_names_of_axes():
         assert len(set(names)) == len(names)
 
 
-LINE = Axis("x", "x", "1", 0.0, 1.0, "")
+LINE = Axis("x", 0.0, 1.0)
 
 
 def doubling(batch: int) -> tuple[Reference, list[int]]:

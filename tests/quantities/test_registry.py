@@ -13,7 +13,7 @@ from quantities import Problem, problem, problems, register
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.registry import unregister
 
-AXIS = Axis("x", "x", "1", 0.0, 1.0, "an argument")
+AXIS = Axis("x", 0.0, 1.0, meaning="an argument")
 TWICE = Reference(
     name="twice",
     symbol="2x",

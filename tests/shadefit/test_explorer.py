@@ -161,7 +161,7 @@ def test_every_table_has_a_function_of_its_own():
     assert explorer.identifier(Entry("best/g-exp_9.2", "best", owner)) == "bestGExp92"
 
 
-X = Axis("x", "x", "1", 0.0, np.inf, "an argument")
+X = Axis("x", 0.0, np.inf, meaning="an argument")
 
 
 @pytest.fixture

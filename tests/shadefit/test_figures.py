@@ -35,8 +35,8 @@ from shadefit.figures.values import axis_hints, compared_values, exact, mesh
 DOCS = Path(__file__).parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
 SLOW = pytest.mark.slow
-X = Axis("x", "x", "1", 0.0, np.inf, "first argument")
-ANGLE = Axis("turn", "φ", "rad", 0.0, np.pi, "second argument", open_below=True)
+X = Axis("x", 0.0, np.inf, meaning="first argument")
+ANGLE = Axis("turn", 0.0, np.pi, "φ", "rad", "second argument", open_below=True)
 rng = np.random.default_rng(6)
 
 
