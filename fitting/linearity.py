@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -53,7 +54,11 @@ def program_of(form: Form) -> Program:
         return form(jnp.stack(c).reshape(form.coefficient_shape), *point)
 
     parameters = points if coefficients is None else (coefficients, *points)
-    return trace(Function(form.name.replace("-", "_"), form.equation, parameters, None, "v", call))
+    # A fit may ask for the program while JAX traces the fit: the program's constants stay numbers.
+    with jax.ensure_compile_time_eval():
+        return trace(
+            Function(form.name.replace("-", "_"), form.equation, parameters, None, "v", call)
+        )
 
 
 def linear_parts(form: Form, points: np.ndarray) -> LinearParts | None:

@@ -10,7 +10,10 @@ import traceback
 from pathlib import Path
 
 from quantities.problem import Problem
-from quantities.registry import register
+from quantities.registry import register, unregister
+
+# What each file declared when it was last loaded: loading it again replaces these.
+_LOADED: dict[Path, list[Problem]] = {}
 
 
 class ProblemFileError(Exception):
@@ -20,7 +23,8 @@ class ProblemFileError(Exception):
 def load_problems(named: str) -> list[Problem]:
     """Run a problem file and register the quantities that it declares.
 
-    `named` is FILE.py, or FILE.py:NAME for one quantity of several. Returns the quantities. Raises
+    `named` is FILE.py, or FILE.py:NAME for one quantity of several. Quantities that the same file
+    declared before are replaced. Returns the quantities. Raises
     ValueError for a file that cannot be read, that declares none, or that declares no NAME; and
     `ProblemFileError` for an error that the file itself raises.
     """
@@ -34,8 +38,11 @@ def load_problems(named: str) -> list[Problem]:
     if wanted and wanted not in found:
         raise ValueError(f"{path} declares no {wanted!r}: allowed are {', '.join(found)}")
     chosen = [found[wanted]] if wanted else list(found.values())
+    for problem in _LOADED.pop(path.resolve(), []):
+        unregister(problem.name)
     for problem in chosen:
         register(problem)
+    _LOADED[path.resolve()] = chosen
     return chosen
 
 

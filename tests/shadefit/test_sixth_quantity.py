@@ -1,26 +1,29 @@
-"""A sixth quantity, which only tests/soft_step.py knows, goes through every command."""
+"""A sixth quantity, which only examples/soft_step.py knows, goes through every command."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 import shadefit as sf
 from quantities.registry import unregister
 from shadefit.cli import main
-from tests.soft_step import PROBLEM
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "soft_step.py"
+FILE = ["-p", str(EXAMPLE)]
 
 
 @pytest.fixture(autouse=True)
 def _registered():
-    sf.register(PROBLEM)
     yield
-    unregister(PROBLEM.name)
+    unregister("soft")
 
 
 def test_it_goes_through_every_command(tmp_path, capsys):
     def run(*arguments) -> str:
+        command, *rest = map(str, arguments)
         with pytest.raises(SystemExit) as ended:
-            main([str(each) for each in arguments])
+            main([command, *FILE, *rest])
         output = capsys.readouterr()
         assert ended.value.code == 0, output.err
         return output.out
@@ -28,7 +31,7 @@ def test_it_goes_through_every_command(tmp_path, capsys):
     table = tmp_path / "soft.json"
     largest = {}
     for norm in ("l2", "linf"):
-        made = json.loads(run("refit", "soft", "--norm", norm, "--out", tmp_path, "--json"))
+        made = json.loads(run("refit", "--norm", norm, "--out", tmp_path, "--json"))
         largest[norm] = made["tables"][0]["errors"]["off_grid"]["max"]
     assert largest["linf"] < 0.9 * largest["l2"]
     assert largest["linf"] < 0.02
@@ -60,6 +63,17 @@ def test_it_goes_through_every_command(tmp_path, capsys):
 )
 def test_its_options_are_those_of_its_axes(capsys, arguments, message):
     with pytest.raises(SystemExit) as ended:
-        main(["evaluate", "soft", *arguments])
+        main(["evaluate", *FILE, "soft", *arguments])
     assert ended.value.code == 2
     assert message in capsys.readouterr().err
+
+
+def test_the_declaration_is_short():
+    assert len(EXAMPLE.read_text().splitlines()) < 60
+
+
+def test_without_a_folder_its_table_is_not_written_into_the_package(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["refit", *FILE])
+    assert ended.value.code == 2
+    assert "soft has no folder of its own: give one by --out" in capsys.readouterr().err

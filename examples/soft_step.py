@@ -1,4 +1,8 @@
-"""A sixth quantity, declared as a user would: S = tanh(x y), and two forms that stand for it."""
+"""A quantity of one's own: S = tanh(x y), and two forms that approximate it.
+
+shadefit refit -p examples/soft_step.py --norm linf --out /tmp/tables
+shadefit export -p examples/soft_step.py /tmp/tables/soft.json --to hlsl
+"""
 
 import jax.numpy as jnp
 
