@@ -30,6 +30,7 @@ from programs import (
     write_source,
 )
 from programs.toolchains.verification import corners, run_code, text_of
+from quantities.loader import option_for
 
 # Code is run at 2^EXPONENT points and at the corners of the domain.
 EXPONENT = 17
@@ -115,7 +116,7 @@ def source_file(
     # The source is first written without its header: if that is not possible, no time is spent on
     # measurements.
     bare = write_source(functions, key, kind, constants=constants)
-    command = ["shadefit", "export", entry.name, "--to", key]
+    command = ["shadefit", "export", *option_for(entry.problem), entry.name, "--to", key]
     if precision is not None:
         command += ["--precision", precision]
     if function_name is not None:

@@ -7,6 +7,7 @@ instead of fitting again, so that an interrupted search continues where it stopp
 import hashlib
 import itertools
 import json
+import shlex
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,7 +22,9 @@ from coefficients.record import table_of
 from coefficients.table import Table, read, serialise
 from fitting import Form, Goal, common_domain, judge
 from fitting.fit import fit
+from fitting.linearity import program_of
 from quantities import Problem
+from quantities.loader import option_for
 
 
 @dataclass(frozen=True)
@@ -123,7 +126,9 @@ class Search:
 
         It is the same in every run, so that its table is found again.
         """
-        text = json.dumps([form.shape, asdict(self.goal)], sort_keys=True)
+        # A form without a shape is told by what it computes: a user may change it under its name.
+        shape = repr(program_of(form).steps) if form.shape is None else form.shape
+        text = json.dumps([shape, asdict(self.goal)], sort_keys=True)
         return f"{form.name}-{hashlib.sha256(text.encode()).hexdigest()[:10]}"
 
     def _blank_cost(self, form: Form) -> int:
@@ -156,7 +161,8 @@ class Search:
         except ValueError as error:
             write_whole(self._refusal(form), f"{error}\n")
             return None
-        table = table_of(made, f"shadefit search {self.owner.name}", name)
+        command = shlex.join(["shadefit", "search", *option_for(self.owner), self.owner.name])
+        table = table_of(made, command, name)
         write_whole(self.out / f"{name}.json", serialise(table))
         return table
 

@@ -12,8 +12,9 @@ from pathlib import Path
 from quantities.problem import Problem
 from quantities.registry import register, unregister
 
-# What each file declared when it was last loaded: loading it again replaces these.
-_LOADED: dict[Path, list[Problem]] = {}
+# What each file declared when it was last loaded, and how the file was named then. Loading it again
+# replaces this.
+_LOADED: dict[Path, tuple[str, list[Problem]]] = {}
 
 
 class ProblemFileError(Exception):
@@ -38,12 +39,19 @@ def load_problems(named: str) -> list[Problem]:
     if wanted and wanted not in found:
         raise ValueError(f"{path} declares no {wanted!r}: allowed are {', '.join(found)}")
     chosen = [found[wanted]] if wanted else list(found.values())
-    for problem in _LOADED.pop(path.resolve(), []):
+    _, before = _LOADED.pop(path.resolve(), (named, []))
+    for problem in before:
         unregister(problem.name)
     for problem in chosen:
         register(problem)
-    _LOADED[path.resolve()] = chosen
+    _LOADED[path.resolve()] = str(path), chosen
     return chosen
+
+
+def option_for(problem: Problem) -> list[str]:
+    """Return the option that loads a quantity again, for a command; none for a built-in one."""
+    files = [file for file, declared in _LOADED.values() if problem in declared]
+    return ["-p", files[0]] if files else []
 
 
 def _declared(path: Path) -> list[Problem]:

@@ -1,5 +1,6 @@
 """`shadefit refit`: fit published forms, or those of best tables, to exact values; write tables."""
 
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -179,9 +180,13 @@ def _table(
     from fitting.fit import fit
     from fitting.goal import Goal
     from quantities import Problem
+    from quantities.loader import option_for
 
     if isinstance(each, Problem):
-        command = f"shadefit refit {each.name} --grid {grid} --weight {weight}{_options(given)}"
+        file = "".join(f" {shlex.quote(word)}" for word in option_for(each))
+        command = (
+            f"shadefit refit{file} {each.name} --grid {grid} --weight {weight}{_options(given)}"
+        )
         return table_of(fit(each.default, Goal(**given), grid, weight, tell), command)
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()

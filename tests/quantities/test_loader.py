@@ -2,8 +2,8 @@
 
 import pytest
 
-from quantities.loader import ProblemFileError, load_problems
-from quantities.registry import problems, unregister
+from quantities.loader import ProblemFileError, load_problems, option_for
+from quantities.registry import problem, problems, unregister
 
 DECLARATION = """
 import jax.numpy as jnp
@@ -38,6 +38,8 @@ def file(tmp_path):
 def test_all_quantities_of_a_file_are_registered(file):
     assert [each.name for each in load_problems(str(file))] == ["one", "two"]
     assert {"one", "two"} <= set(problems())
+    assert option_for(problem("two")) == ["-p", str(file)]
+    assert option_for(problem("q")) == []
 
 
 def test_one_quantity_is_taken_by_its_name(file):
