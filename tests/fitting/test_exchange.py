@@ -65,6 +65,7 @@ def test_rounded_coefficients_are_better_than_if_simply_rounded(rounding, dtype)
         assert np.abs(difference(fitted)).max() < 0.99 * np.abs(difference(simply)).max()
 
 
+@pytest.mark.slow
 def test_rounded_least_squares_refit_what_is_left():
     fitted = fit(QUOTIENT, Goal(rounding="float16")).fitted
     c = fitted.constants
@@ -93,6 +94,7 @@ def test_relative_errors_are_smaller_when_they_are_asked_for():
     assert relative.least_error is None and plain.least_error is not None
 
 
+@pytest.mark.slow
 def test_a_quotient_of_linear_functions_has_a_bound_that_is_nearly_attained():
     found = made(R_FORM, Goal("linf"))
     assert found.least_error is not None
