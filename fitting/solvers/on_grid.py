@@ -106,7 +106,8 @@ def solve_in_general(form: Form, grid: Grid, exact: Array) -> tuple[Array, str]:
 
     def rms(end: Array) -> float:
         difference = form_values(form.fitted(end), points) - np.asarray(exact)
-        return float(np.sqrt(np.average(difference**2, weights=grid.weights)))
+        with np.errstate(over="ignore"):
+            return float(np.sqrt(np.average(difference**2, weights=grid.weights)))
 
     return min(ends, key=lambda end: np.nan_to_num(rms(end), nan=np.inf)), MARQUARDT
 
