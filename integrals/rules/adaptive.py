@@ -1,0 +1,292 @@
+"""Adaptive quadrature over the unit cube, with arrays of fixed shapes for JAX.
+
+The cube is cut into boxes, each with a product of Gauss–Legendre rules. The error of a box is the
+sum of three parts:
+
+* the difference to a rule with fewer nodes,
+* the last Legendre coefficients of the integrand on the box: they are large if there is a kink, a
+  jump or a singularity, wherever the nodes happen to be,
+* at the faces, the difference between the integrand and the polynomial through the nodes: it finds
+  a kink or a jump between the last nodes and the face.
+
+The worst boxes are halved until the total error is small enough or the allowed number of steps is
+used up. Where halving reduces the error only by a factor ρ, as at a singularity, it would go on as
+a geometric series, so the error is divided by 1 − ρ.
+"""
+
+import functools
+import itertools
+from collections.abc import Callable
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from integrals.reference import Estimate
+from integrals.rules.interval import gauss_legendre
+
+# Rounding of the weighted sum, in units of ε times the integral of |integrand|.
+ROUNDINGS = 16
+
+# A box is not halved further once its side is this small a part of the coordinate of its upper end:
+# its nodes would be rounded to each other, or to the end. At 0 there is no such limit.
+_LEAST_SIDE = 2.0**-40
+
+# The largest ρ that is believed.
+_SLOWEST = 0.995
+
+
+class Effort(NamedTuple):
+    """How much work an adaptive rule may do.
+
+    A box has `nodes` nodes in each variable. There are at least `panels` boxes along each variable
+    at the start. Each of at most `steps` steps halves the `splits` worst boxes. The rule stops
+    earlier when the error is at most `tolerance` times the integral of |integrand|.
+    """
+
+    nodes: int
+    panels: int
+    steps: int
+    splits: int
+    tolerance: float
+
+
+# By the number of variables. In one variable, 128 nodes at the start find a peak with a standard
+# deviation of 1e-3 of the interval. More variables have fewer nodes in each, as their product
+# counts, and a wider tolerance, as their errors are overestimated more.
+DEFAULTS = {
+    1: Effort(nodes=16, panels=8, steps=48, splits=2, tolerance=1e-13),
+    2: Effort(nodes=12, panels=4, steps=48, splits=4, tolerance=1e-10),
+    3: Effort(nodes=8, panels=2, steps=32, splits=8, tolerance=1e-7),
+    4: Effort(nodes=6, panels=2, steps=24, splits=8, tolerance=1e-5),
+}
+
+
+class Boxes(NamedTuple):
+    """N boxes in k variables: where they are, and the estimates of the rule on each.
+
+    The breaks cut each variable into segments. `segment` (N, k) has the index of the box's segment.
+    `lower` and `upper` (N, k) are its ends as fractions of the segment. `value` (N,) is the
+    integral, `errors` (N, k) has a part for each variable, and `size` (N,) is the integral of
+    |integrand|. `side` (N,) is the smallest side, as a part of the coordinate of its upper end.
+    `slowness` (N,) is the factor 1/(1 − ρ) by which the errors have to be multiplied.
+    """
+
+    segment: Array
+    lower: Array
+    upper: Array
+    value: Array
+    errors: Array
+    size: Array
+    side: Array
+    slowness: Array
+
+    def error(self) -> Array:
+        """Return the error of each box, (N,)."""
+        return jnp.sum(self.errors, axis=1) * self.slowness
+
+
+def adaptive(
+    integrand: Callable[..., Array],
+    edges: Callable[..., list[Array]],
+    arguments: tuple[Array, ...],
+    effort: Effort,
+) -> Estimate:
+    """Integrate `integrand(position, *arguments)` over the unit cube, position (k,).
+
+    `edges(*arguments)` returns for each variable the ends of its segments: an increasing array from
+    0 to 1 with the breaks in between. The derivative by `arguments` is that of the rule with the
+    boxes held fixed within their segments. So it is right across a break that moves.
+    """
+    held = tuple(map(jax.lax.stop_gradient, arguments))
+    boxes = _refined(lambda x: integrand(x, *held), edges(*held), effort)
+
+    @jax.custom_jvp
+    def total(arguments, boxes):
+        return jnp.sum(boxes.value)
+
+    @total.defjvp
+    def derivative(primals, tangents):
+        arguments, boxes = primals
+
+        def again(*arguments):
+            ends = edges(*arguments)
+
+            def value(place):
+                box, (points, weights) = _Box(ends, *place), _product(effort.nodes, len(ends))
+                return box.volume * (
+                    weights @ box.values(lambda x: integrand(x, *arguments), points)
+                )
+
+            return jnp.sum(jax.lax.map(value, (boxes.segment, boxes.lower, boxes.upper)))
+
+        return total(arguments, boxes), jax.jvp(again, arguments, tangents[0])[1]
+
+    rounding = ROUNDINGS * np.finfo(float).eps * jnp.sum(boxes.size)
+    return Estimate(total(tuple(arguments), boxes), jnp.sum(boxes.error()) + rounding)
+
+
+def evaluations_at_once(effort: Effort, variables: int) -> int:
+    """Return how many values of the integrand one point needs in memory at the same time."""
+    boxes = max(effort.panels**variables, 2 * effort.splits)
+    return boxes * (effort.nodes**variables + _fewer(effort.nodes) ** variables)
+
+
+def _refined(integrand, edges: list[Array], effort: Effort) -> Boxes:
+    """Return the boxes after at most `effort.steps` steps, with empty ones in unused places."""
+    measure = jax.vmap(functools.partial(_measured, integrand, edges, effort.nodes))
+    segment, lower, upper = _first_boxes([len(ends) - 1 for ends in edges], effort.panels)
+    first = measure(segment, lower, upper)
+    count = len(segment)
+    unused = effort.steps * effort.splits
+    boxes = jax.tree.map(
+        lambda x: jnp.concatenate([x, jnp.zeros((unused, *x.shape[1:]), x.dtype)]), first
+    )
+
+    def priority(boxes):
+        error = boxes.error()
+        error = jnp.where(jnp.isnan(error), jnp.inf, error)
+        return jnp.where(boxes.side > _LEAST_SIDE, error, 0.0)
+
+    def unfinished(state):
+        step, boxes = state
+        small = jnp.sum(boxes.error()) <= effort.tolerance * jnp.sum(boxes.size)
+        return (step < effort.steps) & ~small & (jnp.max(priority(boxes)) > 0)
+
+    def halve_the_worst(state):
+        step, boxes = state
+        _, worst = jax.lax.top_k(priority(boxes), effort.splits)
+        segment, lower, upper = boxes.segment[worst], boxes.lower[worst], boxes.upper[worst]
+        cut = jax.nn.one_hot(jnp.argmax(boxes.errors[worst], axis=1), len(edges)) > 0
+        middle = (lower + upper) / 2
+        below = (segment, lower, jnp.where(cut, middle, upper))
+        above = (segment, jnp.where(cut, middle, lower), upper)
+        halves = measure(*(jnp.concatenate(pair) for pair in zip(below, above, strict=True)))
+        halves = halves._replace(
+            slowness=jnp.tile(_slowness(boxes.errors[worst], halves.errors), 2)
+        )
+        fresh = count + step * effort.splits + jnp.arange(effort.splits)
+        places = jnp.concatenate([worst, fresh])
+        return step + 1, jax.tree.map(lambda x, half: x.at[places].set(half), boxes, halves)
+
+    return jax.lax.while_loop(unfinished, halve_the_worst, (0, boxes))[1]
+
+
+def _slowness(before: Array, after: Array) -> Array:
+    """Return 1/(1 − ρ) from errors of boxes (n, k) and of their halves (2n, k), lower ones first."""
+    whole, halves = jnp.sum(before, axis=1), jnp.sum(after, axis=1)
+    left, right = jnp.split(halves, 2)
+    known = (whole > 0) & (whole < jnp.inf) & jnp.isfinite(left + right)
+    ratio = jnp.where(known, (left + right) / jnp.where(known, whole, 1.0), 0.0)
+    return 1 / (1 - jnp.minimum(ratio, _SLOWEST))
+
+
+def _first_boxes(segments: list[int], panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return segment, lower and upper, (N, k) each: at least `panels` boxes along each variable."""
+    axes = []
+    for count in segments:
+        parts = -(-panels // count)
+        axes.append([(s, i / parts, (i + 1) / parts) for s in range(count) for i in range(parts)])
+    boxes = np.array(list(itertools.product(*axes)))  # (N, k, 3)
+    return boxes[..., 0].astype(int), boxes[..., 1], boxes[..., 2]
+
+
+def _measured(integrand, edges, nodes: int, segment, lower, upper) -> Boxes:
+    """Return one box with the value, the errors and the size that the rules find on it."""
+    box = _Box(edges, segment, lower, upper)
+    variables, fewer = len(edges), _fewer(nodes)
+    found = box.values(integrand, _product(nodes, variables)[0])
+    other = box.values(integrand, _product(fewer, variables)[0])
+    value = box.volume * (_product(nodes, variables)[1] @ found)
+    difference = jnp.abs(value - box.volume * (_product(fewer, variables)[1] @ other))
+    weights = gauss_legendre(nodes, 0.0, 1.0)[1]
+    values = found.reshape((nodes,) * variables)
+    errors = []
+    for variable in range(variables):
+        last = jnp.tensordot(_last_coefficients(nodes), values, axes=(1, variable))
+        missed = jnp.max(jnp.abs(last), axis=0).reshape(-1)
+        for face in (0, 1):
+            at_face = jnp.tensordot(_at_end(nodes, face), values, axes=(0, variable)).reshape(-1)
+            gap = _gap(integrand, box, variable, face, at_face, nodes)
+            missed = missed + weights[0] * gap
+        across = _product(nodes, variables - 1)[1]
+        errors.append(box.volume * (across @ missed) + difference / variables)
+    size = box.volume * (_product(nodes, variables)[1] @ jnp.abs(found))
+    return Boxes(segment, lower, upper, value, jnp.stack(errors), size, box.side, jnp.ones(()))
+
+
+def _gap(integrand, box: "_Box", variable: int, face: int, expected: Array, nodes: int) -> Array:
+    """Return how far the integrand is from its `expected` values at a face, (nodes^(k − 1),).
+
+    It is asked at the face and just inside, and the smaller distance counts: with a jump on the
+    face itself, its value there may be that of the neighbour. A value that is not finite is a
+    singularity, which the coefficients find, and counts as zero.
+    """
+    across, _ = _product(nodes, len(box.sides) - 1)
+    gaps = []
+    for inside in (0.0, _LEAST_SIDE):
+        points = np.insert(across, variable, abs(face - inside), axis=1)
+        gap = jnp.abs(box.values(integrand, points) - expected)
+        gaps.append(jnp.where(jnp.isfinite(gap), gap, 0.0))
+    return jnp.minimum(*gaps)
+
+
+class _Box:
+    """A box of non-negative sides: its place, volume and smallest relative side."""
+
+    def __init__(self, edges, segment, lower, upper):
+        pairs = zip(edges, segment, strict=True)
+        ends = jnp.stack([each[index + np.arange(2)] for each, index in pairs])
+        begin, length = ends[:, 0], ends[:, 1] - ends[:, 0]
+        corner, sides = begin + length * lower, length * (upper - lower)
+        # The integrand may have no value at the place of an empty box: ask for values elsewhere.
+        self.empty = jnp.any(sides <= 0)
+        self.origin = jnp.where(self.empty, 0.0, corner)
+        self.sides = jnp.where(self.empty, 1.0, sides)
+        self.volume = jnp.where(self.empty, 0.0, jnp.prod(self.sides))
+        relative = jnp.min(self.sides / (self.origin + self.sides))
+        self.side = jnp.where(self.empty, 0.0, relative)
+
+    def values(self, integrand, points: np.ndarray) -> Array:
+        """Return the integrand at points (n, k), fractions of the box: zeros if it is empty."""
+        found = jax.vmap(integrand)(self.origin + self.sides * points)
+        return jnp.where(self.empty, 0.0, found)
+
+
+def _fewer(nodes: int) -> int:
+    return 3 * nodes // 4
+
+
+@functools.cache
+def _product(nodes: int, variables: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return nodes (nodes^k, k) and weights (nodes^k,) of the product rule on the unit cube."""
+    x, w = gauss_legendre(nodes, 0.0, 1.0)
+    points = np.array(list(itertools.product(x, repeat=variables)))
+    weights = functools.reduce(np.multiply.outer, [w] * variables, np.ones(1))
+    return points, weights.reshape(-1)
+
+
+@functools.cache
+def _last_coefficients(nodes: int) -> np.ndarray:
+    """Return the matrix (nodes/4, nodes) from values at the nodes to the last coefficients.
+
+    These are the coefficients of the highest Legendre polynomials in the polynomial that
+    interpolates the integrand at the nodes: (2m + 1) Σ wᵢ P_m(2xᵢ − 1) f(xᵢ) on [0, 1].
+    """
+    x, w = gauss_legendre(nodes, 0.0, 1.0)
+    degrees = np.arange(nodes - max(2, nodes // 4), nodes)
+    polynomials = np.polynomial.legendre.legvander(2 * x - 1, nodes - 1)[:, degrees]
+    return (2 * degrees + 1)[:, None] * (w[:, None] * polynomials).T
+
+
+@functools.cache
+def _at_end(nodes: int, face: int) -> np.ndarray:
+    """Return the vector (nodes,) from values at the nodes to the polynomial's value at 0 or at 1."""
+    x, w = gauss_legendre(nodes, 0.0, 1.0)
+    degrees = np.arange(nodes)
+    coefficients = (2 * degrees + 1)[:, None] * (
+        w[:, None] * np.polynomial.legendre.legvander(2 * x - 1, nodes - 1)
+    ).T
+    return (1.0 if face else -1.0) ** degrees @ coefficients
