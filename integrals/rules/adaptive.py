@@ -26,6 +26,7 @@ from jax import Array
 
 from integrals.reference import Estimate
 from integrals.rules.interval import gauss_legendre
+from integrals.rules.product import last_coefficients, product_rule, value_at_end
 
 # Rounding of the weighted sum, in units of ε times the integral of |integrand|.
 ROUNDINGS = 16
@@ -62,6 +63,29 @@ DEFAULTS = {
     3: Effort(nodes=8, panels=2, steps=32, splits=8, tolerance=1e-7),
     4: Effort(nodes=6, panels=2, steps=24, splits=8, tolerance=1e-5),
 }
+
+
+# The numbers that are allowed: the smallest and the largest.
+_ALLOWED = {"nodes": (4, 64), "panels": (1, 256), "steps": (0, 1024)}
+
+
+def effort_of(variables: int, **given: float | None) -> Effort:
+    """Return the default effort for a number of variables, with what is `given` and not None.
+
+    Raises ValueError if there are no defaults for so many variables, or a number is out of range.
+    """
+    if variables not in DEFAULTS:
+        raise ValueError(
+            f"{variables} variables of integration: allowed are 1 to {max(DEFAULTS)}; "
+            "Monte Carlo takes more"
+        )
+    given = {name: value for name, value in given.items() if value is not None}
+    for name, (least, most) in _ALLOWED.items():
+        if name in given and not least <= given[name] <= most:
+            raise ValueError(f"{name} = {given[name]}: allowed are {least} to {most}")
+    if not given.get("tolerance", 1) > 0:
+        raise ValueError(f"tolerance = {given['tolerance']}: it has to be positive")
+    return DEFAULTS[variables]._replace(**given)
 
 
 class Boxes(NamedTuple):
@@ -115,7 +139,7 @@ def adaptive(
             ends = edges(*arguments)
 
             def value(place):
-                box, (points, weights) = _Box(ends, *place), _product(effort.nodes, len(ends))
+                box, (points, weights) = _Box(ends, *place), product_rule(effort.nodes, len(ends))
                 return box.volume * (
                     weights @ box.values(lambda x: integrand(x, *arguments), points)
                 )
@@ -197,23 +221,25 @@ def _measured(integrand, edges, nodes: int, segment, lower, upper) -> Boxes:
     """Return one box with the value, the errors and the size that the rules find on it."""
     box = _Box(edges, segment, lower, upper)
     variables, fewer = len(edges), _fewer(nodes)
-    found = box.values(integrand, _product(nodes, variables)[0])
-    other = box.values(integrand, _product(fewer, variables)[0])
-    value = box.volume * (_product(nodes, variables)[1] @ found)
-    difference = jnp.abs(value - box.volume * (_product(fewer, variables)[1] @ other))
+    found = box.values(integrand, product_rule(nodes, variables)[0])
+    other = box.values(integrand, product_rule(fewer, variables)[0])
+    value = box.volume * (product_rule(nodes, variables)[1] @ found)
+    difference = jnp.abs(value - box.volume * (product_rule(fewer, variables)[1] @ other))
     weights = gauss_legendre(nodes, 0.0, 1.0)[1]
     values = found.reshape((nodes,) * variables)
     errors = []
     for variable in range(variables):
-        last = jnp.tensordot(_last_coefficients(nodes), values, axes=(1, variable))
+        last = jnp.tensordot(last_coefficients(nodes), values, axes=(1, variable))
         missed = jnp.max(jnp.abs(last), axis=0).reshape(-1)
         for face in (0, 1):
-            at_face = jnp.tensordot(_at_end(nodes, face), values, axes=(0, variable)).reshape(-1)
+            at_face = jnp.tensordot(value_at_end(nodes, face), values, axes=(0, variable)).reshape(
+                -1
+            )
             gap = _gap(integrand, box, variable, face, at_face, nodes)
             missed = missed + weights[0] * gap
-        across = _product(nodes, variables - 1)[1]
+        across = product_rule(nodes, variables - 1)[1]
         errors.append(box.volume * (across @ missed) + difference / variables)
-    size = box.volume * (_product(nodes, variables)[1] @ jnp.abs(found))
+    size = box.volume * (product_rule(nodes, variables)[1] @ jnp.abs(found))
     return Boxes(segment, lower, upper, value, jnp.stack(errors), size, box.side, jnp.ones(()))
 
 
@@ -224,7 +250,7 @@ def _gap(integrand, box: "_Box", variable: int, face: int, expected: Array, node
     face itself, its value there may be that of the neighbour. A value that is not finite is a
     singularity, which the coefficients find, and counts as zero.
     """
-    across, _ = _product(nodes, len(box.sides) - 1)
+    across, _ = product_rule(nodes, len(box.sides) - 1)
     gaps = []
     for inside in (0.0, _LEAST_SIDE):
         points = np.insert(across, variable, abs(face - inside), axis=1)
@@ -257,36 +283,3 @@ class _Box:
 
 def _fewer(nodes: int) -> int:
     return 3 * nodes // 4
-
-
-@functools.cache
-def _product(nodes: int, variables: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes (nodes^k, k) and weights (nodes^k,) of the product rule on the unit cube."""
-    x, w = gauss_legendre(nodes, 0.0, 1.0)
-    points = np.array(list(itertools.product(x, repeat=variables)))
-    weights = functools.reduce(np.multiply.outer, [w] * variables, np.ones(1))
-    return points, weights.reshape(-1)
-
-
-@functools.cache
-def _last_coefficients(nodes: int) -> np.ndarray:
-    """Return the matrix (nodes/4, nodes) from values at the nodes to the last coefficients.
-
-    These are the coefficients of the highest Legendre polynomials in the polynomial that
-    interpolates the integrand at the nodes: (2m + 1) Σ wᵢ P_m(2xᵢ − 1) f(xᵢ) on [0, 1].
-    """
-    x, w = gauss_legendre(nodes, 0.0, 1.0)
-    degrees = np.arange(nodes - max(2, nodes // 4), nodes)
-    polynomials = np.polynomial.legendre.legvander(2 * x - 1, nodes - 1)[:, degrees]
-    return (2 * degrees + 1)[:, None] * (w[:, None] * polynomials).T
-
-
-@functools.cache
-def _at_end(nodes: int, face: int) -> np.ndarray:
-    """Return the vector (nodes,) from values at the nodes to the polynomial's value at 0 or at 1."""
-    x, w = gauss_legendre(nodes, 0.0, 1.0)
-    degrees = np.arange(nodes)
-    coefficients = (2 * degrees + 1)[:, None] * (
-        w[:, None] * np.polynomial.legendre.legvander(2 * x - 1, nodes - 1)
-    ).T
-    return (1.0 if face else -1.0) ** degrees @ coefficients
