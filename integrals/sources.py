@@ -14,7 +14,6 @@ variables of integration, then the axes. Every leg works under `jax.jit` and `ja
 and quadrature also work under `jax.grad`, by the axes.
 """
 
-import dataclasses
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -31,15 +30,16 @@ from integrals.rules.adaptive import Effort, adaptive, effort_of, evaluations_at
 from integrals.rules.directions import hemisphere_angles, sphere_angles
 from integrals.rules.ranges import Place, Range, at, ranges_of
 from integrals.sampling import Sampling
-from integrals.user_functions import check_function, check_map, check_range, probe_axes, probe_cube
+from integrals.user_functions import check_function, check_map, check_range, probe_cube
 
 # The error of a closed form without a stated error, in units of ε times its value.
 ROUNDINGS = 8
 
 _ORDER = ("closed_form", "quadrature", "monte_carlo")
 
-# Values of the integrand that `Reference.estimates` keeps in memory at once: 2^21 take 16 MB.
-_VALUES_AT_ONCE = 1 << 21
+# Values of the integrand that `Reference.estimates` keeps in memory at once. They fit in the cache.
+# Larger batches are slower, too: every point of a batch takes as many steps as its hardest point.
+_VALUES_AT_ONCE = 1 << 17
 _LARGEST_BATCH = 8192
 
 

@@ -155,7 +155,8 @@ def adaptive(
 def evaluations_at_once(effort: Effort, variables: int) -> int:
     """Return how many values of the integrand one point needs in memory at the same time."""
     boxes = max(effort.panels**variables, 2 * effort.splits)
-    return boxes * (effort.nodes**variables + _fewer(effort.nodes) ** variables)
+    faces = 4 * variables * effort.nodes ** (variables - 1)
+    return boxes * (effort.nodes**variables + _fewer(effort.nodes) ** variables + faces)
 
 
 def _refined(integrand, edges: list[Array], effort: Effort) -> Boxes:
@@ -188,9 +189,8 @@ def _refined(integrand, edges: list[Array], effort: Effort) -> Boxes:
         below = (segment, lower, jnp.where(cut, middle, upper))
         above = (segment, jnp.where(cut, middle, lower), upper)
         halves = measure(*(jnp.concatenate(pair) for pair in zip(below, above, strict=True)))
-        halves = halves._replace(
-            slowness=jnp.tile(_slowness(boxes.errors[worst], halves.errors), 2)
-        )
+        whole = jax.tree.map(lambda x: x[worst], boxes)
+        halves = _accepted(whole, halves)
         fresh = count + step * effort.splits + jnp.arange(effort.splits)
         places = jnp.concatenate([worst, fresh])
         return step + 1, jax.tree.map(lambda x, half: x.at[places].set(half), boxes, halves)
@@ -198,13 +198,28 @@ def _refined(integrand, edges: list[Array], effort: Effort) -> Boxes:
     return jax.lax.while_loop(unfinished, halve_the_worst, (0, boxes))[1]
 
 
-def _slowness(before: Array, after: Array) -> Array:
-    """Return 1/(1 − ρ) from errors of boxes (n, k) and of their halves (2n, k), lower ones first."""
-    whole, halves = jnp.sum(before, axis=1), jnp.sum(after, axis=1)
-    left, right = jnp.split(halves, 2)
-    known = (whole > 0) & (whole < jnp.inf) & jnp.isfinite(left + right)
-    ratio = jnp.where(known, (left + right) / jnp.where(known, whole, 1.0), 0.0)
-    return 1 / (1 - jnp.minimum(ratio, _SLOWEST))
+def _accepted(whole: Boxes, halves: Boxes) -> Boxes:
+    """Return what takes the place of n boxes: their 2n halves, all lower ones first.
+
+    Where a half is not finite although the box is, a node met a singularity, or rounding in the
+    integrand gave 0/0. Then the box stays, with its error, and is not halved again.
+    """
+    error, parts = jnp.sum(whole.errors, axis=1), jnp.sum(halves.errors, axis=1)
+    sound = jnp.isfinite(whole.value + error)
+    left, right = jnp.split(parts + jnp.abs(halves.value), 2)
+    keep = jnp.tile(sound & ~jnp.isfinite(left + right), 2)
+    left, right = jnp.split(parts, 2)
+    known = sound & (error > 0) & jnp.isfinite(left + right)
+    ratio = jnp.where(known, (left + right) / jnp.where(known, error, 1.0), 0.0)
+    slowness = jnp.tile(1 / (1 - jnp.minimum(ratio, _SLOWEST)), 2)
+    halves = halves._replace(slowness=slowness)
+    kept = whole._replace(side=jnp.zeros_like(whole.side))
+    instead = jax.tree.map(lambda x: jnp.concatenate([x, jnp.zeros_like(x)]), kept)
+
+    def choose(half, other):
+        return jnp.where(keep.reshape(-1, *[1] * (half.ndim - 1)), other, half)
+
+    return jax.tree.map(choose, halves, instead)
 
 
 def _first_boxes(segments: list[int], panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -32,7 +32,7 @@ def last_coefficients(nodes: int) -> np.ndarray:
 
 @functools.cache
 def value_at_end(nodes: int, face: int) -> np.ndarray:
-    """Return the vector (nodes,) from values at the nodes to the polynomial's value at 0 or at 1."""
+    """Return the vector (nodes,) from values at the nodes to the polynomial's value at 0 or 1."""
     x, w = gauss_legendre(nodes, 0.0, 1.0)
     degrees = np.arange(nodes)
     coefficients = (2 * degrees + 1)[:, None] * (
