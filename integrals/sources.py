@@ -79,7 +79,7 @@ class Source:
         return Source({**self.builders, **other.builders}, {**self.at_once, **other.at_once})
 
 
-def closed_form(function: Callable, error: float | Callable | None = None) -> Source:
+def closed_form(function: Callable, error: Place | None = None) -> Source:
     """Return a source of `function(*axes)`.
 
     `error` bounds the absolute error: a number, or a function of the axes. Without it, the error is
@@ -104,13 +104,13 @@ def closed_form(function: Callable, error: float | Callable | None = None) -> So
 
 def quadrature(
     integrand: Callable,
-    over: Sequence[tuple[Place, Place]],
+    over: Sequence,
     *,
     breaks: Sequence = (),
     nodes: int | None = None,
     panels: int | None = None,
     steps: int | None = None,
-    tolerance: float | None = None,
+    tolerance: int | float | None = None,
 ) -> Source:
     """Return a source of ∫ `integrand(t1, …, tk, *axes)` over a box, for one to four variables.
 
@@ -156,7 +156,7 @@ def hemisphere(
     nodes: int | None = None,
     panels: int | None = None,
     steps: int | None = None,
-    tolerance: float | None = None,
+    tolerance: int | float | None = None,
 ) -> Source:
     """Return a source of ∫ `integrand(direction, *axes)` dω over the hemisphere about the z axis.
 
@@ -295,8 +295,12 @@ def _adaptive_leg(axes: tuple[Axis, ...], integrand, ranges: list[Range], effort
     def edges(*values) -> list[Array]:
         return [each.edges(values) for each in ranges]
 
+    # Compiled once for each effort, as without `jit` every call would compile the loop anew.
+    @functools.cache
+    def compiled(effort: Effort):
+        return jax.jit(lambda *values: adaptive(integrand, edges, values, effort))
+
     def evaluate(*values, **changes) -> Estimate:
-        changed = effort_of(len(ranges), **{**effort._asdict(), **changes})
-        return adaptive(integrand, edges, values, changed)
+        return compiled(effort_of(len(ranges), **{**effort._asdict(), **changes}))(*values)
 
     return leg(*axes)(evaluate)

@@ -59,9 +59,9 @@ class Effort(NamedTuple):
 # counts, and a wider tolerance, as their errors are overestimated more.
 DEFAULTS = {
     1: Effort(nodes=16, panels=8, steps=48, splits=2, tolerance=1e-13),
-    2: Effort(nodes=12, panels=4, steps=48, splits=4, tolerance=1e-10),
-    3: Effort(nodes=8, panels=2, steps=32, splits=8, tolerance=1e-7),
-    4: Effort(nodes=6, panels=2, steps=24, splits=8, tolerance=1e-5),
+    2: Effort(nodes=16, panels=4, steps=48, splits=4, tolerance=1e-7),
+    3: Effort(nodes=8, panels=2, steps=32, splits=8, tolerance=1e-6),
+    4: Effort(nodes=6, panels=2, steps=16, splits=8, tolerance=1e-4),
 }
 
 
@@ -69,7 +69,7 @@ DEFAULTS = {
 _ALLOWED = {"nodes": (4, 64), "panels": (1, 256), "steps": (0, 1024)}
 
 
-def effort_of(variables: int, **given: float | None) -> Effort:
+def effort_of(variables: int, **given: int | float | None) -> Effort:
     """Return the default effort for a number of variables, with what is `given` and not None.
 
     Raises ValueError if there are no defaults for so many variables, or a number is out of range.

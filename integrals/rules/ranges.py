@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jax import Array
 
 # The end of a range or a break: a number, or a function of the axes' values.
-Place = float | Callable[..., Array]
+Place = int | float | Callable
 
 
 class Range(NamedTuple):
