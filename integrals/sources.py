@@ -26,8 +26,9 @@ from jax import Array
 from integrals.monte_carlo import Sequence as PointSequence
 from integrals.monte_carlo import mean_estimate, unit_points
 from integrals.reference import Axis, Estimate, Leg, Reference, leg
-from integrals.rules.adaptive import Effort, adaptive, effort_of, evaluations_at_once
+from integrals.rules.adaptive import adaptive
 from integrals.rules.directions import hemisphere_angles, sphere_angles
+from integrals.rules.effort import Effort, effort_of, evaluations_at_once
 from integrals.rules.ranges import Place, Range, at, ranges_of
 from integrals.sampling import Sampling
 from integrals.user_functions import check_function, check_map, check_range, probe_cube
@@ -60,11 +61,6 @@ class Source:
         Raises ValueError if a function takes other arguments, or is NaN at a point that is tried.
         """
         return {name: self.builders[name](tuple(axes)) for name in self._names}
-
-    @property
-    def best_leg(self) -> str:
-        """The name of the most exact leg."""
-        return self._names[0]
 
     @property
     def _names(self) -> list[str]:
@@ -127,7 +123,7 @@ def quadrature(
 
     `nodes` are those of a panel in each variable. Up to `steps` times, the worst panels are halved,
     until the error is below `tolerance` times ∫ |integrand|. The defaults are in
-    `rules.adaptive.DEFAULTS`.
+    `rules.effort.DEFAULTS`.
     """
     ranges = ranges_of(over, breaks)
     effort = effort_of(len(ranges), nodes=nodes, panels=panels, steps=steps, tolerance=tolerance)
@@ -160,10 +156,9 @@ def hemisphere(
 ) -> Source:
     """Return a source of ∫ `integrand(direction, *axes)` dω over the hemisphere about the z axis.
 
-    `direction` (3,) is a unit vector. `importance(x, y, *axes)` maps the unit square to directions
-    and returns (direction, Jacobian in steradians), see `rules.directions`. A good map makes the
-    integrand times the Jacobian smooth. `breaks` are in its coordinates x and y. The rest is as for
-    `quadrature`.
+    `direction` (3,) is a unit vector. `importance(x, y, *axes)` maps the unit square to (direction,
+    Jacobian), see `rules.directions`. A good map makes the integrand times the Jacobian smooth.
+    `breaks` are in its coordinates x and y. The rest is as for `quadrature`.
     """
     effort = effort_of(2, nodes=nodes, panels=panels, steps=steps, tolerance=tolerance)
     ranges = ranges_of([(0, 1), (0, 1)], breaks)
@@ -261,7 +256,7 @@ def make_reference(
     `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does.
     """
     total = source if isinstance(source, Source) else functools.reduce(Source.__add__, source)
-    at_once = total.at_once[total.best_leg]
+    at_once = total.at_once[total._names[0]]  # of the most exact leg
     batch = max(1, min(_LARGEST_BATCH, _VALUES_AT_ONCE // at_once))
     return Reference(
         name=name,
@@ -278,9 +273,8 @@ def make_reference(
 def _sampling(axes: int, at_once: int) -> Sampling:
     """Return the default numbers of points, those of built-in quantities of the same kind.
 
-    They grow with the number of axes: as for Q with one, G with two, and P_s with more. If a value
-    needs more than 1000 values of an integrand at once, as an integral over directions or an
-    average of samples does, they are those of R: each point takes about a millisecond.
+    They grow with the number of axes: as for Q with one, G with two, and P_s with more. They are
+    those of R if a point needs over 1000 values of an integrand at once: it takes milliseconds.
     """
     if at_once > 1000:
         return Sampling(fitted=11, checked=10, judged=12, climbs=False, verified=1 << 12)

@@ -25,6 +25,7 @@ import numpy as np
 from jax import Array
 
 from integrals.reference import Estimate
+from integrals.rules.effort import Effort, fewer
 from integrals.rules.interval import gauss_legendre
 from integrals.rules.product import last_coefficients, product_rule, value_at_end
 
@@ -37,55 +38,6 @@ _LEAST_SIDE = 2.0**-40
 
 # The largest ρ that is believed.
 _SLOWEST = 0.995
-
-
-class Effort(NamedTuple):
-    """How much work an adaptive rule may do.
-
-    A box has `nodes` nodes in each variable. There are at least `panels` boxes along each variable
-    at the start. Each of at most `steps` steps halves the `splits` worst boxes. The rule stops
-    earlier when the error is at most `tolerance` times the integral of |integrand|.
-    """
-
-    nodes: int
-    panels: int
-    steps: int
-    splits: int
-    tolerance: float
-
-
-# By the number of variables. In one variable, 128 nodes at the start find a peak with a standard
-# deviation of 1e-3 of the interval. More variables have fewer nodes in each, as their product
-# counts, and a wider tolerance, as their errors are overestimated more.
-DEFAULTS = {
-    1: Effort(nodes=16, panels=8, steps=48, splits=2, tolerance=1e-13),
-    2: Effort(nodes=16, panels=4, steps=48, splits=4, tolerance=1e-7),
-    3: Effort(nodes=8, panels=2, steps=32, splits=8, tolerance=1e-6),
-    4: Effort(nodes=6, panels=2, steps=16, splits=8, tolerance=1e-4),
-}
-
-
-# The numbers that are allowed: the smallest and the largest.
-_ALLOWED = {"nodes": (4, 64), "panels": (1, 256), "steps": (0, 1024)}
-
-
-def effort_of(variables: int, **given: int | float | None) -> Effort:
-    """Return the default effort for a number of variables, with what is `given` and not None.
-
-    Raises ValueError if there are no defaults for so many variables, or a number is out of range.
-    """
-    if variables not in DEFAULTS:
-        raise ValueError(
-            f"{variables} variables of integration: allowed are 1 to {max(DEFAULTS)}; "
-            "Monte Carlo takes more"
-        )
-    given = {name: value for name, value in given.items() if value is not None}
-    for name, (least, most) in _ALLOWED.items():
-        if name in given and not least <= given[name] <= most:
-            raise ValueError(f"{name} = {given[name]}: allowed are {least} to {most}")
-    if not given.get("tolerance", 1) > 0:
-        raise ValueError(f"tolerance = {given['tolerance']}: it has to be positive")
-    return DEFAULTS[variables]._replace(**given)
 
 
 class Boxes(NamedTuple):
@@ -150,13 +102,6 @@ def adaptive(
 
     rounding = ROUNDINGS * np.finfo(float).eps * jnp.sum(boxes.size)
     return Estimate(total(tuple(arguments), boxes), jnp.sum(boxes.error()) + rounding)
-
-
-def evaluations_at_once(effort: Effort, variables: int) -> int:
-    """Return how many values of the integrand one point needs in memory at the same time."""
-    boxes = max(effort.panels**variables, 2 * effort.splits)
-    faces = 4 * variables * effort.nodes ** (variables - 1)
-    return boxes * (effort.nodes**variables + _fewer(effort.nodes) ** variables + faces)
 
 
 def _refined(integrand, edges: list[Array], effort: Effort) -> Boxes:
@@ -235,43 +180,49 @@ def _first_boxes(segments: list[int], panels: int) -> tuple[np.ndarray, np.ndarr
 def _measured(integrand, edges, nodes: int, segment, lower, upper) -> Boxes:
     """Return one box with the value, the errors and the size that the rules find on it."""
     box = _Box(edges, segment, lower, upper)
-    variables, fewer = len(edges), _fewer(nodes)
-    found = box.values(integrand, product_rule(nodes, variables)[0])
-    other = box.values(integrand, product_rule(fewer, variables)[0])
-    value = box.volume * (product_rule(nodes, variables)[1] @ found)
-    difference = jnp.abs(value - box.volume * (product_rule(fewer, variables)[1] @ other))
-    weights = gauss_legendre(nodes, 0.0, 1.0)[1]
+    variables = len(edges)
+    points, weights = product_rule(nodes, variables)
+    other_points, other_weights = product_rule(fewer(nodes), variables)
+    across = product_rule(nodes, variables - 1)[1]
+    # All in one call: JAX compiles the integrand once.
+    every = np.concatenate([points, other_points, _face_points(nodes, variables)])
+    found, other, faces = jnp.split(
+        box.values(integrand, every), [len(points), len(points) + len(other_points)]
+    )
+    value = box.volume * (weights @ found)
+    difference = jnp.abs(value - box.volume * (other_weights @ other))
     values = found.reshape((nodes,) * variables)
+    faces = faces.reshape(variables, 2, 2, len(across))
     errors = []
     for variable in range(variables):
         last = jnp.tensordot(last_coefficients(nodes), values, axes=(1, variable))
         missed = jnp.max(jnp.abs(last), axis=0).reshape(-1)
         for face in (0, 1):
-            at_face = jnp.tensordot(value_at_end(nodes, face), values, axes=(0, variable)).reshape(
-                -1
-            )
-            gap = _gap(integrand, box, variable, face, at_face, nodes)
-            missed = missed + weights[0] * gap
-        across = product_rule(nodes, variables - 1)[1]
+            expected = jnp.tensordot(value_at_end(nodes, face), values, axes=(0, variable))
+            gap = jnp.abs(faces[variable, face] - expected.reshape(-1))
+            # A value that is not finite is a singularity, which the coefficients find.
+            gap = jnp.min(jnp.where(jnp.isfinite(gap), gap, 0.0), axis=0)
+            missed = missed + gauss_legendre(nodes, 0.0, 1.0)[1][0] * gap
         errors.append(box.volume * (across @ missed) + difference / variables)
-    size = box.volume * (product_rule(nodes, variables)[1] @ jnp.abs(found))
+    size = box.volume * (weights @ jnp.abs(found))
     return Boxes(segment, lower, upper, value, jnp.stack(errors), size, box.side, jnp.ones(()))
 
 
-def _gap(integrand, box: "_Box", variable: int, face: int, expected: Array, nodes: int) -> Array:
-    """Return how far the integrand is from its `expected` values at a face, (nodes^(k − 1),).
+def _face_points(nodes: int, variables: int) -> np.ndarray:
+    """Return points for each variable, its two faces, and two distances from the face.
 
-    It is asked at the face and just inside, and the smaller distance counts: with a jump on the
-    face itself, its value there may be that of the neighbour. A value that is not finite is a
-    singularity, which the coefficients find, and counts as zero.
+    One is on the face and one just inside, and the one closer to the expected value counts: with a
+    jump on the face itself, the value there may be that of the neighbour.
     """
-    across, _ = product_rule(nodes, len(box.sides) - 1)
-    gaps = []
-    for inside in (0.0, _LEAST_SIDE):
-        points = np.insert(across, variable, abs(face - inside), axis=1)
-        gap = jnp.abs(box.values(integrand, points) - expected)
-        gaps.append(jnp.where(jnp.isfinite(gap), gap, 0.0))
-    return jnp.minimum(*gaps)
+    across, _ = product_rule(nodes, variables - 1)
+    return np.concatenate(
+        [
+            np.insert(across, variable, abs(face - inside), axis=1)
+            for variable in range(variables)
+            for face in (0, 1)
+            for inside in (0.0, _LEAST_SIDE)
+        ]
+    )
 
 
 class _Box:
@@ -294,7 +245,3 @@ class _Box:
         """Return the integrand at points (n, k), fractions of the box: zeros if it is empty."""
         found = jax.vmap(integrand)(self.origin + self.sides * points)
         return jnp.where(self.empty, 0.0, found)
-
-
-def _fewer(nodes: int) -> int:
-    return 3 * nodes // 4

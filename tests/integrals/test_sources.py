@@ -60,7 +60,24 @@ def assert_honest(reference, points, known):
     assert np.max(error) <= known.largest_error
 
 
-@pytest.mark.parametrize("name", INTEGRALS)
+# In the default run, the table without the integrands that resemble others.
+ALIKE = (
+    "layer at the end",
+    "cos 6000t",
+    "end kink",
+    "1/√(1 − t)",
+    "t^−0.9",
+    "peak",
+    "peak and 1/√t",
+    "two jumps",
+)
+
+
+def some_slow(names, alike):
+    return [pytest.param(n, marks=pytest.mark.slow if n in alike else ()) for n in names]
+
+
+@pytest.mark.parametrize("name", some_slow(INTEGRALS, ALIKE))
 def test_the_error_is_never_understated(name):
     known = INTEGRALS[name]
     assert_honest(single(quadrature(known.integrand, [(0, 1)]), PLACE), places(400), known)
@@ -89,14 +106,14 @@ def test_the_error_is_honest_with_other_effort(name, effort):
     honest_with(name, effort)
 
 
-@pytest.mark.parametrize("name", PLANE)
+@pytest.mark.parametrize("name", some_slow(PLANE, ("smooth", "disc", "singular corner")))
 def test_the_error_in_two_variables_is_never_understated(name):
     known = PLANE[name]
     points = places(16)
     assert_honest(single(quadrature(known.integrand, [(0, 1), (0, 1)]), PLACE), points, known)
 
 
-@pytest.mark.parametrize("variables", [3, 4])
+@pytest.mark.parametrize("variables", some_slow([3, 4], [4]))
 def test_three_and_four_variables(variables):
     def integrand(*values):
         *t, a = values
@@ -262,8 +279,9 @@ def test_infinite_ranges_and_ends_that_depend_on_axes(over, integrand, exact):
     value, error = reference.estimates(k[:, None])
     assert np.all(np.abs(value - exact(k)) <= error)
     assert np.all(error < 1e-9)
-    slope = jax.vmap(jax.grad(reference.value))(k)
-    np.testing.assert_allclose(slope, (exact(k + 1e-5) - exact(k - 1e-5)) / 2e-5, rtol=1e-7)
+    if callable(over[0]) or callable(over[1]):
+        slope = jax.jit(jax.vmap(jax.grad(reference.value)))(k)
+        np.testing.assert_allclose(slope, (exact(k + 1e-5) - exact(k - 1e-5)) / 2e-5, rtol=1e-7)
 
 
 def test_a_break_that_moves_gives_the_derivative_of_a_jump():
@@ -279,7 +297,9 @@ def test_a_break_that_moves_gives_the_derivative_of_a_jump():
     np.testing.assert_allclose(jax.vmap(jax.grad(reference.value))(at), 2 - at, rtol=1e-13)
 
 
-@pytest.mark.parametrize("over", [(-np.inf, np.inf), (0, np.inf), (-np.inf, 3)])
+@pytest.mark.parametrize(
+    "over", some_slow([(-np.inf, np.inf), (0, np.inf), (-np.inf, 3)], [(0, np.inf), (-np.inf, 3)])
+)
 def test_breaks_in_infinite_ranges(over):
     reference = single(
         quadrature(lambda t, k: jnp.exp(-k * jnp.abs(t - 1)), [over], breaks=(1.0,)), K
@@ -292,17 +312,17 @@ def test_breaks_in_infinite_ranges(over):
     assert np.all(error < 1e-11)
 
 
-@pytest.mark.parametrize("name", ["smooth", "peak", "peak on a plateau"])
+@pytest.mark.parametrize("name", some_slow(["smooth", "peak on a plateau"], ["peak on a plateau"]))
 def test_derivatives_equal_finite_differences(name):
     known = INTEGRALS[name]
     value = single(quadrature(known.integrand, [(0, 1)]), PLACE).value
     a = np.array([0.001, 0.3, 0.77])
     step = 1e-5
     expected = (known.exact(a + step) - known.exact(a - step)) / (2 * step)
-    for differentiate in (jax.grad, jax.jacfwd):
-        np.testing.assert_allclose(
-            jax.jit(jax.vmap(differentiate(value)))(a), expected, rtol=1e-4, atol=1e-9
-        )
+    slopes = [jax.jit(jax.vmap(by(value)))(a) for by in (jax.grad, jax.jacfwd)]
+    np.testing.assert_allclose(slopes, [expected] * 2, rtol=1e-4, atol=1e-9)
+    if name != "smooth":
+        return
     second = jax.jacfwd(jax.grad(value))(0.5)
     steps = (known.exact(0.5 + 1e-4) - 2 * known.exact(0.5) + known.exact(0.5 - 1e-4)) / 1e-8
     np.testing.assert_allclose(second, steps, rtol=1e-4, atol=1e-6)
