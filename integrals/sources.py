@@ -60,11 +60,8 @@ class Source:
 
         Raises ValueError if a function takes other arguments, or is NaN at a point that is tried.
         """
-        return {name: self.builders[name](tuple(axes)) for name in self._names}
-
-    @property
-    def _names(self) -> list[str]:
-        return [name for name in _ORDER if name in self.builders]
+        names = [name for name in _ORDER if name in self.builders]
+        return {name: self.builders[name](tuple(axes)) for name in names}
 
     def __add__(self, other: "Source") -> "Source":
         """Return a source with the legs of both. Raises ValueError if they have one in common."""
@@ -256,7 +253,8 @@ def make_reference(
     `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does.
     """
     total = source if isinstance(source, Source) else functools.reduce(Source.__add__, source)
-    at_once = total.at_once[total._names[0]]  # of the most exact leg
+    legs = total.legs(axes)
+    at_once = total.at_once[next(iter(legs))]
     batch = max(1, min(_LARGEST_BATCH, _VALUES_AT_ONCE // at_once))
     return Reference(
         name=name,
@@ -266,7 +264,9 @@ def make_reference(
         axes=tuple(axes),
         sampling=sampling or _sampling(len(axes), at_once),
         batch=batch,
-        **total.legs(axes),
+        closed_form=legs.get("closed_form"),
+        quadrature=legs.get("quadrature"),
+        monte_carlo=legs.get("monte_carlo"),
     )
 
 

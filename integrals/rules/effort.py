@@ -1,6 +1,6 @@
 """How much work an adaptive rule may do, and how many values it needs at once."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class Effort(NamedTuple):
@@ -28,7 +28,6 @@ DEFAULTS = {
     4: Effort(nodes=6, panels=2, steps=16, splits=8, tolerance=1e-4),
 }
 
-
 # The numbers that are allowed: the smallest and the largest.
 _ALLOWED = {"nodes": (4, 64), "panels": (1, 256), "steps": (0, 1024)}
 
@@ -43,13 +42,13 @@ def effort_of(variables: int, **given: int | float | None) -> Effort:
             f"{variables} variables of integration: allowed are 1 to {max(DEFAULTS)}; "
             "Monte Carlo takes more"
         )
-    given = {name: value for name, value in given.items() if value is not None}
+    changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     for name, (least, most) in _ALLOWED.items():
-        if name in given and not least <= given[name] <= most:
-            raise ValueError(f"{name} = {given[name]}: allowed are {least} to {most}")
-    if not given.get("tolerance", 1) > 0:
-        raise ValueError(f"tolerance = {given['tolerance']}: it has to be positive")
-    return DEFAULTS[variables]._replace(**given)
+        if name in changes and not least <= changes[name] <= most:
+            raise ValueError(f"{name} = {changes[name]}: allowed are {least} to {most}")
+    if not changes.get("tolerance", 1) > 0:
+        raise ValueError(f"tolerance = {changes['tolerance']}: it has to be positive")
+    return DEFAULTS[variables]._replace(**changes)
 
 
 def evaluations_at_once(effort: Effort, variables: int) -> int:

@@ -27,7 +27,7 @@ class Range(NamedTuple):
     @property
     def infinite(self) -> tuple[bool, bool]:
         """Whether the lower and the upper end are infinite."""
-        return tuple(not callable(end) and math.isinf(end) for end in (self.lower, self.upper))
+        return _is_infinite(self.lower), _is_infinite(self.upper)
 
     def place(self, u: Array, axes: tuple[Array, ...]) -> tuple[Array, Array]:
         """Return the variable t at u in [0, 1], and dt/du."""
@@ -65,6 +65,10 @@ class Range(NamedTuple):
         lower, upper = at(self.lower, axes), at(self.upper, axes)
         length = upper - lower
         return jnp.where(length == 0, 0.0, (t - lower) / jnp.where(length == 0, 1.0, length))
+
+
+def _is_infinite(end: Place) -> bool:
+    return not callable(end) and math.isinf(end)
 
 
 def ranges_of(over: Sequence, breaks: Sequence) -> list[Range]:
