@@ -15,6 +15,9 @@ functions of `shading` that define the quantity, and the checks in `reference.le
   not use it. tests/integrals/test_r.py also averages the quadrature of P_s.
 * r(k), `VELVET`: all legs evaluate the energy for light at a right angle to the fibre, where
   docs/brdf.md proves it to be largest. `fuzz.velvet.scattered_energy` checks other lights.
+
+`sources` makes references for quantities of your own. Its `monte_carlo` is imported from there:
+here the name is that of a module.
 """
 
 from integrals.fuzz.g import G as G
@@ -26,5 +29,11 @@ from integrals.reference import Axis as Axis
 from integrals.reference import Estimate as Estimate
 from integrals.reference import Reference as Reference
 from integrals.sampling import Sampling as Sampling
+from integrals.sources import Source as Source
+from integrals.sources import closed_form as closed_form
+from integrals.sources import hemisphere as hemisphere
+from integrals.sources import make_reference as make_reference
+from integrals.sources import quadrature as quadrature
+from integrals.sources import sphere as sphere
 
 REFERENCES = {each.name: each for each in (PS, G, Q, R, VELVET)}
