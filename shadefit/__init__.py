@@ -44,6 +44,12 @@ if TYPE_CHECKING:
     from integrals import Reference as Reference
     from integrals import Sampling as Sampling
     from integrals.reference import leg as leg
+    from integrals.sources import closed_form as closed_form
+    from integrals.sources import hemisphere as hemisphere
+    from integrals.sources import make_reference as make_reference
+    from integrals.sources import monte_carlo as monte_carlo
+    from integrals.sources import quadrature as quadrature
+    from integrals.sources import sphere as sphere
     from programs import LANGUAGES as LANGUAGES
     from programs import Parameter as Parameter
     from programs import function as function
@@ -69,6 +75,9 @@ _HOMES = {
         *("Axis", "Estimate", "Reference", "Sampling"),
     ),
     "integrals.reference": ("leg",),
+    "integrals.sources": (
+        *("closed_form", "hemisphere", "make_reference", "monte_carlo", "quadrature", "sphere"),
+    ),
     "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
     "quantities": ("Problem", "problem", "problems", "register"),
     "quantities.calling_convention": ("Argument", "CallingConvention"),
