@@ -4,8 +4,10 @@ A program needs no other import than `import shadefit`. The names below are impo
 first used, so that the import itself does not wait for JAX. Turn float64 on before anything is
 evaluated: `jax.config.update("jax_enable_x64", True)`.
 
-* Exact values: `PS`, `G`, `Q`, `R` and `VELVET` are the references of the fuzz BRDF. `Reference`,
-  `Axis`, `Sampling`, `Estimate` and `leg` are for references of one's own.
+* Exact values: `PS`, `G`, `Q`, `R` and `VELVET` are the references of the fuzz BRDF.
+* Exact values of one's own integral: `make_reference` makes a `Reference` over each `Axis` from a
+  `closed_form`, from a `quadrature`, `hemisphere` or `sphere` integral, or from `monte_carlo`
+  samples. `Sampling`, `Estimate` and `leg` are for a reference that is written out in full.
 * Fits: `fit` finds the coefficients of a `Form` for a `Goal`, and returns a `Fit`. `plain_form`
   makes a form of a plain function.
 * Quantities: `problem(name)`, `problems()` and `register(problem)`. A `Problem` is made with
