@@ -4,6 +4,7 @@ import numpy as np
 
 from fitting.form import FittedForm, Form, traced
 from integrals.reference import Axis, box_of
+from programs.bounding.branch_and_bound import BranchAndBound
 from programs.bounding.denominators import DenominatorBound, prove_no_pole
 
 
@@ -22,4 +23,5 @@ def certify_denominators(fitted: FittedForm, enough: float = np.inf) -> Denomina
     form, axes, constants = fitted.form, proof_axes(fitted.form), fitted.constants
     value = form if form.proofs.value is None else form.proofs.value
     program = traced(fitted, lambda *point: value(constants, *point), axes)
-    return prove_no_pole(program, box_of(axes), enough, first_split=form.proofs.first_split)
+    solver = BranchAndBound(first_split=form.proofs.first_split)
+    return prove_no_pole(program, box_of(axes), enough, solver)

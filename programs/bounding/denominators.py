@@ -20,6 +20,7 @@ NOWHERE_NEGATIVE = (-1e-300, np.inf)
 POSITIVE = (np.nextafter(0, 1), np.inf)
 # Operation -> the values that its operand may have
 ALLOWED = {"sqrt": NOWHERE_NEGATIVE, "log": POSITIVE}
+SOLVER = BranchAndBound()
 
 
 @dataclass(frozen=True)
@@ -43,29 +44,19 @@ def prove_no_pole(
     program: Program,
     box: np.ndarray,
     enough: float = np.inf,
-    *,
-    first_split: tuple[int, ...] = (),
-    max_boxes: int = BranchAndBound.max_boxes,
+    solver: BranchAndBound = SOLVER,
 ) -> DenominatorBound:
     """Bound every divisor of a program from below on a box.
 
     Radicands and arguments of logarithms are shown to be in their domain too. Arguments: `box`
-    (inputs, 2), the ends of each side; `enough`, a bound that need not be improved; `first_split`
-    and `max_boxes`, as in `BranchAndBound`. Returns the least of the bounds; −∞ if something is not
-    proven. Raises ValueError for an operation that has no interval version, since it may have
-    poles of its own.
+    (inputs, 2), the ends of each side; `enough`, a bound that need not be improved; `solver`, with
+    its limits. Returns the least of the bounds; −∞ if something is not proven. Raises ValueError
+    for an operation that has no interval version, since it may have poles of its own.
     """
     enclose(program, *box.T[:, None])
-    solver = BranchAndBound(max_boxes=max_boxes, first_split=first_split)
     bound, boxes = np.inf, 0
     for operand in operands(program, "div", 1):
-        found = bound_below(
-            subprogram(program, [operand]),
-            box,
-            enough,
-            first_split=first_split,
-            max_boxes=max_boxes,
-        )
+        found = bound_below(subprogram(program, [operand]), box, enough, solver)
         bound, boxes = min(bound, found.bound), boxes + found.boxes
         if not found.holds:
             return DenominatorBound(-np.inf, boxes)
@@ -83,9 +74,7 @@ def bound_below(
     program: Program,
     box: np.ndarray,
     enough: float = np.inf,
-    *,
-    first_split: tuple[int, ...] = (),
-    max_boxes: int = BranchAndBound.max_boxes,
+    solver: BranchAndBound = SOLVER,
 ) -> DenominatorBound:
     """Bound the only output of a program from below on a box (inputs, 2).
 
@@ -96,7 +85,6 @@ def bound_below(
     def settled(below, above, least, most):
         return below >= min(TIGHTNESS * least, enough)
 
-    solver = BranchAndBound(max_boxes=max_boxes, first_split=first_split)
     found = solver.bound_output(program, box, POSITIVE, settled)
     return DenominatorBound(found.lower, found.boxes)
 

@@ -13,7 +13,7 @@ from fitting.form import traced
 from fitting.proofs import pole_proof
 from fitting.proofs.pole_proof import certify_denominators, proof_axes
 from integrals.reference import box_of
-from programs import DenominatorBound, evaluate, prove_no_pole, subprogram
+from programs import BranchAndBound, DenominatorBound, evaluate, subprogram
 from programs.bounding.denominators import TIGHTNESS, operands
 from quantities import problem
 from quantities.fuzz.material import COS_PHI
@@ -111,8 +111,8 @@ def test_a_bound_that_is_enough_is_found_with_fewer_boxes():
 
 
 def test_a_search_that_reaches_its_limit_proves_nothing(monkeypatch):
-    limited = functools.partial(prove_no_pole, max_boxes=10)
-    monkeypatch.setattr(pole_proof, "prove_no_pole", limited)
+    limited = functools.partial(BranchAndBound, max_boxes=10)
+    monkeypatch.setattr(pole_proof, "BranchAndBound", limited)
     assert not certify_denominators(NEARLY).holds
 
 

@@ -9,24 +9,7 @@ from programs.cost import KINDS, WEIGHTS, Cost, count_operations
 from programs.functions import Function, Parameter
 from programs.operations import OPERATIONS
 from programs.tracing.tracer import trace
-
-UNIT = (0.25, 1.0)
-SCALAR = Function(
-    "Rational",
-    "A rational function.",
-    (Parameter("alpha", UNIT), Parameter("d", UNIT)),
-    None,
-    "result",
-    lambda alpha, d: (0.5 + alpha * (0.25 + alpha * d)) / jnp.sqrt(1.0 + d * d),
-)
-ARRAYS = Function(
-    "Scaled",
-    "An array in, an array out.",
-    (Parameter("c", UNIT, size=2), Parameter("x", UNIT)),
-    2,
-    "results",
-    lambda c, x: (c[0] + c[1] * x, jnp.exp(-c[1]) * x),
-)
+from tests.programs.toys import ARRAYS, SCALAR, UNIT
 
 
 def of_x(call):

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from programs.bounding.branch_and_bound import BranchAndBound
 from programs.bounding.denominators import (
     NOWHERE_NEGATIVE,
     TIGHTNESS,
@@ -115,23 +116,24 @@ def test_a_function_without_divisions_needs_no_boxes():
 def test_a_search_that_reaches_the_limit_is_no_proof():
     program = quotient(0, -0.9999 * np.cos(0.7), -0.9999 * np.sin(0.7))
     assert prove_no_pole(program, BOX).holds
-    assert not prove_no_pole(program, BOX, max_boxes=10).holds
-    assert not prove_no_pole(
-        program_of(lambda a, t: jnp.sqrt(a * t - a * t + 1)), BOX, max_boxes=0
-    ).holds
+    assert not prove_no_pole(program, BOX, solver=BranchAndBound(max_boxes=10)).holds
+    root = program_of(lambda a, t: jnp.sqrt(a * t - a * t + 1))
+    assert not prove_no_pole(root, BOX, solver=BranchAndBound(max_boxes=0)).holds
 
 
 def test_the_first_split_changes_the_boxes_but_not_the_proof():
     for program in (quotient(0.3, -0.4, -0.5), POLES["crosses zero between nodes"]):
         plain = prove_no_pole(program, BOX)
-        split = prove_no_pole(program, BOX, first_split=(16, 4))
+        split = prove_no_pole(program, BOX, solver=BranchAndBound(first_split=(16, 4)))
         assert split.holds == plain.holds
         assert split.boxes >= 64
-    proven = prove_no_pole(quotient(0.3, -0.4, -0.5), BOX, first_split=(16, 4))
+    proven = prove_no_pole(
+        quotient(0.3, -0.4, -0.5), BOX, solver=BranchAndBound(first_split=(16, 4))
+    )
     least = sampled(quotient(0.3, -0.4, -0.5), 101).min()
     assert 0.9 * TIGHTNESS * least <= proven.bound <= least
     roots = program_of(lambda a, t: jnp.sqrt(a + t))
-    assert prove_no_pole(roots, BOX, first_split=(16, 4)).boxes == 64
+    assert prove_no_pole(roots, BOX, solver=BranchAndBound(first_split=(16, 4))).boxes == 64
 
 
 # Functions of θ that are infinite or undefined somewhere, and functions that are not

@@ -3,34 +3,15 @@
 import os
 import shutil
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from programs.functions import Function, Parameter
 from programs.toolchains import throughput as timing
 from programs.toolchains.throughput import measure_throughput
+from tests.programs.toys import ARRAYS, SCALAR, UNIT
 
 # gcc and XLA compile the same float32 expression: they contract differently and have another exp.
 DIFFERENCE = 1e-6
-
-UNIT = (0.25, 1.0)
-SCALAR = Function(
-    "Rational",
-    "A rational function.",
-    (Parameter("alpha", UNIT), Parameter("d", UNIT)),
-    None,
-    "result",
-    lambda alpha, d: (0.5 + alpha * (0.25 + alpha * d)) / jnp.sqrt(1.0 + d * d),
-)
-ARRAYS = Function(
-    "Scaled",
-    "An array in, an array out.",
-    (Parameter("c", UNIT, size=2), Parameter("x", UNIT)),
-    2,
-    "results",
-    lambda c, x: (c[0] + c[1] * x, jnp.exp(-c[1]) * x),
-)
 
 needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not on PATH")
 

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 import pytest
@@ -16,6 +15,9 @@ from programs.toolchains import (
     process,
     toolchain,
 )
+from tests.programs.toys import ready
+
+pytestmark = pytest.mark.usefixtures("clean_folder")
 
 RATIO = Function("Ratio", "one in, one out", (Parameter("x", (-1.0, 1.0)),), None, "y", lambda x: x)
 MEAN = Function(
@@ -38,22 +40,6 @@ CODE = {
     "javascript": "function Ratio(x) { return (1.0 + 0.5 * x) / (2.0 + x * x); }\n",
 }
 ZERO = np.zeros((1, 1))
-
-
-@pytest.fixture(autouse=True)
-def clean_folder(tmp_path, monkeypatch):
-    """Fail a test after which the temporary folder is not empty."""
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    yield
-    assert list(tmp_path.iterdir()) == []
-
-
-def ready(language, precision):
-    reason = toolchain(language).missing(precision)
-    if reason is not None:
-        pytest.skip(f"{language} in {precision}: {reason}")
-    return toolchain(language)
 
 
 @pytest.mark.parametrize("language", CODE)

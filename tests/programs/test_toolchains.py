@@ -1,13 +1,14 @@
 """Three functions written by hand in every language are compiled, run and compared with NumPy."""
 
-import tempfile
-
 import numpy as np
 import pytest
 
 from programs.functions import Function, Parameter
 from programs.precision import number_type
 from programs.toolchains import cuda, hlsl, osl, toolchain
+from tests.programs.toys import ready
+
+pytestmark = pytest.mark.usefixtures("clean_folder")
 
 UNIT = (-1.0, 1.0)
 SCALAR = Function("Ratio", "one in, one out", (Parameter("x", UNIT),), None, "y", lambda x: x)
@@ -165,22 +166,6 @@ def reference(function, points, kind):
 # by a few units in the last place.
 FUSED = 6.0
 FUSING = ("glsl", "hlsl", "slang", "wgsl", "osl")
-
-
-@pytest.fixture(autouse=True)
-def clean_folder(tmp_path, monkeypatch):
-    """Fail a test after which the temporary folder is not empty."""
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    yield
-    assert list(tmp_path.iterdir()) == []
-
-
-def ready(language, precision):
-    reason = toolchain(language).missing(precision)
-    if reason is not None:
-        pytest.skip(f"{language} in {precision}: {reason}")
-    return toolchain(language)
 
 
 def sample_points(function, precision, rows=2000):
