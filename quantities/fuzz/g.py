@@ -49,7 +49,7 @@ G = Problem(
         AXES,
         exact_functions,
         lambda points: (points[:, ::-1],),
-        "NdotV = v·n of the view's direction v; density = NdotV = 0 has no limit",
+        "NdotV = v·n of the view's direction v; the result is NaN if NdotV or density is 0",
     ),
     plot=PlotHints(
         {

@@ -96,7 +96,7 @@ def _print(comparison: "Comparison") -> None:
             f"{comparison.quantity}: coefficients",
             ["coefficient", *(each.label for each in comparison.contestants)],
             [[name, *(f"{value:.7f}" for value in values)] for name, values in rows],
-            "Rational coefficients are far from unique: the functions count.",
+            "Other coefficients may give almost the same function: compare the errors.",
         )
     elif rows:
         print(f"{len(rows)} coefficients: --json prints them.\n")
