@@ -21,7 +21,7 @@ def fitted_form(table: Table, owner: Problem) -> FittedForm:
     `owner` is the table's quantity. Raises ValueError if it has no such form, or if the shape of
     the coefficients, their names, or the arguments differ from those of the form.
     """
-    form = owner.form(table.form, table.shape)
+    form = owner.find_form(table.form, table.shape)
     coefficients = np.array(table.coefficients)
     if coefficients.shape != form.coefficient_shape:
         raise ValueError(

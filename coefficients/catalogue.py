@@ -5,6 +5,7 @@ for a closed form. The command line resolves it once, into an `Entry`, and passe
 """
 
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,12 +15,14 @@ from typing import Literal
 import numpy as np
 
 from coefficients.agreement import fitted_form
+from coefficients.expression import form_of, reference_of, require_same
+from coefficients.record import published_table
 from coefficients.table import Table, read
-from fitting import FittedForm
+from fitting import FittedForm, Form
 from integrals.reference import Axis
 from programs.functions import Function
 from quantities import Problem, problem, problems
-from quantities.calling_convention import renamed
+from quantities.calling_convention import Argument, CallingConvention, renamed
 from quantities.problem import ExactCode
 
 FOLDER = Path(__file__).parent / "tables"
@@ -116,6 +119,9 @@ def resolve(name: str) -> Entry:
     errata of a published table are applied unless '@printed' follows its name. Raises ValueError
     for any other name, and for a file that is not a valid table.
     """
+    declared = _declared()
+    if name in declared:
+        return declared[name]
     if name in names() or name.removesuffix(AS_PRINTED) in _files():
         return _kept(name)
     # For a name that is too long, os.path.isfile returns false; Path.is_file raises an error.
@@ -123,12 +129,45 @@ def resolve(name: str) -> Entry:
     if name.startswith(f"{EXACT}/") and not is_file:
         return _closed_form(name)
     if is_file:
-        table = corrected(read(Path(name)))
-        owner = problem(table.quantity)
-        return Entry(name, "file", owner, table, fitted_form(table, owner))
+        return entry_of(corrected(read(Path(name))), name)
     raise ValueError(
         f"no table is called {name!r}: allowed are {', '.join(_allowed())}, or a .json file's path"
     )
+
+
+def entry_of(table: Table, name: str) -> Entry:
+    """Return the entry of a table that is not packaged.
+
+    If its quantity is not known, or has no such form, the form is that of the table's expression.
+    Raises ValueError for a table without an expression then, and for a table that contradicts the
+    form or its own expression.
+    """
+    known = problems().get(table.quantity)
+    if known is not None and known.has_form(table.form, table.shape):
+        fitted = fitted_form(table, known)
+        if table.expression is not None:
+            require_same(table, fitted.form)
+        return Entry(name, "file", known, table, fitted)
+    if table.expression is None:
+        owner = problem(table.quantity)  # Raises ValueError if it is not known.
+        return Entry(name, "file", owner, table, fitted_form(table, owner))
+    form = form_of(table, reference_of(table) if known is None else known.reference)
+    owner = known or _self_contained(table, form)
+    return Entry(name, "file", owner, table, form.fitted(np.array(table.coefficients)))
+
+
+def _self_contained(table: Table, form: Form) -> Problem:
+    """Return the quantity of a table of which nothing else is known."""
+    about = table.about
+    names = about.arguments if about else {axis.name: axis.name for axis in form.axes}
+    arguments = tuple(Argument(axis, own, "both") for axis, own in names.items())
+    function = (
+        about.function
+        if about
+        else "".join(part.capitalize() for part in re.split("[^A-Za-z0-9]+", table.quantity))
+    )
+    summary = f"{form.reference.symbol} by {{equation}}; clamps to the domain."
+    return Problem(form.reference, (form,), CallingConvention(function, summary, arguments))
 
 
 def load(name: str) -> FittedForm:
@@ -146,7 +185,7 @@ def entries(owner: Problem | None = None) -> list[Entry]:
     Those of one quantity are in this order: as printed, published, refitted, best. Those of all are
     in the order of `names`.
     """
-    found = [_kept(name) for name in names()]
+    found = [*(_kept(name) for name in names()), *_declared().values()]
     if owner is None:
         return found
     order: dict[Kind, int] = {"printed": 0, "published": 1, "refitted": 2, "best": 3}
@@ -155,9 +194,12 @@ def entries(owner: Problem | None = None) -> list[Entry]:
 
 
 def published(owner: Problem) -> Entry | None:
-    """Return the published table of a quantity, with its errata applied; None if there is none."""
+    """Return the published table of a quantity, with its errata applied; None if there is none.
+
+    Of several, it is the first.
+    """
     name = f"published/{owner.name}"
-    return _kept(name) if name in _files() else None
+    return _kept(name) if name in _files() else next(iter(_declared(owner).values()), None)
 
 
 def printed(owner: Problem) -> Entry | None:
@@ -174,6 +216,27 @@ def refitted(owner: Problem) -> Entry | None:
 def with_published() -> list[Problem]:
     """List the quantities that have a published table, with which others can be compared."""
     return [owner for owner in problems().values() if published(owner) is not None]
+
+
+def _declared(owner: Problem | None = None) -> dict[str, Entry]:
+    """Return the published constants that quantities declare, by name.
+
+    The name is published/QUANTITY for the first of a quantity, and published/QUANTITY-FORM for the
+    others.
+    """
+    return {
+        f"published/{each.name}{f'-{constants.form}' if k else ''}": _published_entry(each, k)
+        for each in ([owner] if owner else problems().values())
+        for k, constants in enumerate(each.published)
+    }
+
+
+@lru_cache(maxsize=64)
+def _published_entry(owner: Problem, number: int) -> Entry:
+    constants = owner.published[number]
+    name = f"published/{owner.name}{f'-{constants.form}' if number else ''}"
+    table = published_table(owner, constants)
+    return Entry(name, "published", owner, table, fitted_form(table, owner))
 
 
 @lru_cache(maxsize=1)
@@ -270,5 +333,5 @@ def _closed_form(name: str) -> Entry:
 def _allowed() -> Sequence[str]:
     """List the names that an error message offers: refitted, published and best tables."""
     owners = problems().values()
-    public = [f"published/{owner.name}" for owner in with_published()]
+    public = [entry.name for owner in with_published() if (entry := published(owner))]
     return [*(owner.name for owner in owners), *public, *names_of_best()]

@@ -11,6 +11,7 @@ from coefficients.catalogue import EXACT, Entry, resolve
 from coefficients.proof_text import proofs
 from fitting import judge
 from fitting.points.grids import sobol_points
+from fitting.points.scattered import data_points
 from programs import (
     KINDS,
     PRECISIONS,
@@ -50,13 +51,13 @@ def trial_of(entry: Entry, precision: str, exponent: int = EXPONENT) -> Trial:
     """
     points = [corners(entry.axes), sobol_points(entry.axes, exponent, SEED)]
     reference = entry.problem.reference
-    return Trial(
-        CallSequence(entry.functions(precision), entry.arguments_at),
-        np.concatenate(points),
-        precision,
-        reference.values,
-        reference.sampling.verified,
-    )
+    calls = CallSequence(entry.functions(precision), entry.arguments_at)
+    if reference.data is not None:
+        own, values, _ = data_points(entry.require_fitted().form, reference.data.judging)
+        every = np.concatenate([own, *points])
+        return Trial(calls, every, precision, lambda some: values[: len(some)], len(own))
+    exact = reference.values if reference.legs else None
+    return Trial(calls, np.concatenate(points), precision, exact, reference.sampling.verified)
 
 
 def exported_values(entry: Entry, points: np.ndarray) -> np.ndarray:
@@ -104,12 +105,14 @@ def source_file(
     precision: str | None = None,
     function_name: str | None = None,
     constants: str = "inline",
+    made_by: str | None = None,
 ) -> str:
     """Return the source file of an entry; its header states domain, errors, proofs and cost.
 
     Arguments: `key`, a key of LANGUAGES; `precision`, None for float (JavaScript: double);
-    `function_name`, None for the quantity's own; `constants`, "inline" or "table". On one machine,
-    the same call returns the same bytes. Raises ValueError for what cannot be written.
+    `function_name`, None for the quantity's own; `constants`, "inline" or "table"; `made_by`, a
+    text for the header in place of the command line. On one machine, the same call returns the
+    same bytes. Raises ValueError for what cannot be written.
     """
     kind = precision_of(key, precision)
     functions = entry.functions(kind, function_name)
@@ -125,7 +128,7 @@ def source_file(
         command += ["--constants", constants]
     trial = trial_of(entry, kind)
     trial = replace(trial, calls=replace(trial.calls, functions=functions))
-    head = _header(entry, trial, key, bare, shlex.join(command))
+    head = _header(entry, trial, key, bare, made_by or shlex.join(command))
     return write_source(functions, key, kind, constants=constants, header=head)
 
 
@@ -133,8 +136,10 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
     functions, precision = trial.calls.functions, trial.precision
     reference = entry.problem.reference
     equation = entry.equation
+    against = reference.compared_with
+    meant = f": {reference.symbol} = {reference.definition}" if reference.definition else ""
     head = {
-        "Quantity": f"{entry.problem.description}: {reference.symbol} = {reference.definition}",
+        "Quantity": f"{entry.problem.description}{meant}",
         "Equation": f"{equation} of table {entry.name}" if entry.fitted else equation,
         "Domain": f"{_domain(functions)}; all others without unit",
     }
@@ -149,20 +154,16 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
         known = proofs(entry)
         if known:
             head["Proven in exact arithmetic"] = "; ".join(known)
-        errors = judge(entry.fitted)
-        own = Difference(errors.largest, errors.rms)
-        uphill = ", and uphill from the worst" if reference.sampling.climbs else ""
-        head["Error in exact arithmetic"] = (
-            f"{text_of(own)} against the integral (rms over {errors.points} points off the fitting "
-            f"grid; largest sought on more, of the boundary and where it is steep{uphill})"
+        own, head["Error in exact arithmetic"] = _own_errors(entry)
+    if trial.exact is not None:
+        measured, how = _measured(trial, key, source)
+        where = "" if reference.data else ", corners of the domain included"
+        head[f"Error in {precision}"] = (
+            f"{text_of(measured)} against {against} ({len(trial.integral)} fixed points{where}; "
+            f"{how})"
         )
-    measured, how = _measured(trial, key, source)
-    head[f"Error in {precision}"] = (
-        f"{text_of(measured)} against the integral ({len(trial.integral)} fixed points, corners "
-        f"of the domain included; {how})"
-    )
-    if precision == "half":
-        head["Half precision"] = _verdict(trial, own, measured)
+        if precision == "half":
+            head["Half precision"] = _verdict(trial, own, measured)
     head["Cost"] = "; ".join(f"{n}: {cost_text(cost)}" for n, cost in costs(functions).items())
     beside = closed_form_beside(entry)
     if beside is not None:
@@ -170,6 +171,28 @@ def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> 
         head["Cost of the closed form"] = f"{cost_text(exact)} ({beside.name})"
     head["Made by"] = command
     return head
+
+
+def _own_errors(entry: Entry) -> tuple[Difference, str]:
+    """Return the errors of a fitted form in float64, and a text for the header."""
+    reference, fitted = entry.problem.reference, entry.require_fitted()
+    if not (reference.legs or reference.data):
+        stated = entry.require_table().errors
+        if stated is None:
+            return Difference(np.nan, np.nan), "not stated, and not measured: exact values unknown"
+        own = Difference(stated.off_grid.max, stated.off_grid.rms)
+        return own, f"{text_of(own)}, as the table states; not measured again"
+    errors = judge(fitted)
+    own = Difference(errors.largest, errors.rms)
+    if reference.data is not None:
+        which = "that no fit used" if reference.data.held_out.any() else "which were fitted too"
+        rows = f"{errors.points} rows of {reference.data.source}, {which}"
+        return own, f"{text_of(own)} against {reference.compared_with} ({rows})"
+    uphill = ", and uphill from the worst" if reference.sampling.climbs else ""
+    return own, (
+        f"{text_of(own)} against {reference.compared_with} (rms over {errors.points} points off "
+        f"the fitting grid; largest sought on more, of the boundary and where it is steep{uphill})"
+    )
 
 
 def closed_form_beside(entry: Entry) -> Entry | None:

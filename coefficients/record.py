@@ -1,4 +1,4 @@
-"""From a fit to a table."""
+"""From a fit, or from published constants, to a table."""
 
 import json
 import platform
@@ -8,30 +8,37 @@ from typing import Any
 
 import numpy as np
 
+from coefficients.expression import expression_of
 from coefficients.table import SCHEMA, Table, parse
 from fitting import Errors, Fit, Form
 from fitting.goal import LEAST_SQUARES
 from fitting.points.sample import Sample
-from integrals.reference import Axis
+from integrals.reference import Axis, Reference
+from quantities.problem import Problem, Published
 
 _LIBRARIES = ("jax", "jaxlib", "lineax", "numpy", "optimistix", "shadefit")
 
 
-def table_of(fit: Fit, command: str, name: str | None = None) -> Table:
+def table_of(
+    fit: Fit, command: str, name: str | None = None, owner: Problem | None = None
+) -> Table:
     """Return the table of a fit.
 
     `command` is the command line that made it. `name` is the table's name; None stands for the name
-    of the quantity.
+    of the quantity. `owner` is the quantity if a user declared it: the table then says what is
+    known of it.
     """
     form = fit.fitted.form
     record = {
         **_form_record(form, name or form.reference.name),
         "coefficients": fit.fitted.constants.tolist(),
         "coefficient_names": form.coefficient_names,
+        "expression": expression_of(form).model_dump(),
+        **_known("about", None if owner is None or owner.topic else _about(owner)),
         "grid": _grid(fit),
         "weight": fit.measure,
         **({"goal": asdict(fit.goal)} if fit.goal != LEAST_SQUARES else {}),
-        "reference": {"leg": form.reference.best_leg, "error": fit.reference_error},
+        "reference": _reference(form.reference, fit.reference_error),
         "errors": {"on_grid": _errors(fit.on_grid), "off_grid": _errors(fit.off_grid)},
         "certificates": {
             "denominator_bound": _finite(fit.certificate.bound),
@@ -50,6 +57,52 @@ def table_of(fit: Fit, command: str, name: str | None = None) -> Table:
         },
     }
     return parse(json.dumps(record), f"the fit of {form.reference.name}")
+
+
+def published_table(owner: Problem, constants: Published) -> Table:
+    """Return the table of a user's published constants."""
+    form = owner.find_form(constants.form)
+    record = {
+        **_form_record(form, owner.name),
+        "coefficients": np.asarray(constants.coefficients, float).tolist(),
+        "coefficient_names": form.coefficient_names,
+        "expression": expression_of(form).model_dump(),
+        **_known("about", None if owner.topic else _about(owner)),
+        "publication": {
+            "source": constants.source,
+            "appendix": "",
+            "listing": "",
+            "clamps": {},
+            "errata": [],
+        },
+    }
+    return parse(json.dumps(record), f"the published constants of {owner.name}")
+
+
+def _about(owner: Problem) -> dict[str, Any]:
+    reference, calling = owner.reference, owner.calling
+    finite = all(map(np.isfinite, reference.codomain))
+    return {
+        "symbol": reference.symbol,
+        "definition": reference.definition,
+        "meaning": reference.meaning,
+        "function": calling.name,
+        "arguments": {each.axis: each.name for each in calling.arguments},
+        **_known("codomain", list(reference.codomain) if finite else None),
+    }
+
+
+def _reference(reference: Reference, error: float) -> dict[str, Any]:
+    data = reference.data
+    if data is None:
+        return {"leg": reference.best_leg, "error": error}
+    file = {
+        "name": data.source,
+        "sha256": data.digest,
+        "rows": len(data.values),
+        "held_out": int(data.held_out.sum()),
+    }
+    return {"leg": "data", "error": error, "data": file}
 
 
 def _form_record(form: Form, name: str) -> dict[str, Any]:
@@ -75,7 +128,9 @@ def _grid(fit: Fit) -> dict:
 
 
 def _argument(axis: Axis) -> dict:
-    return {"name": axis.name, "unit": axis.unit, "domain": [float(axis.lower), float(axis.upper)]}
+    symbol = {} if axis.symbol == axis.name else {"symbol": axis.symbol}
+    domain = [float(axis.lower), float(axis.upper)]
+    return {"name": axis.name, **symbol, "unit": axis.unit, "domain": domain}
 
 
 def _errors(errors: Errors) -> dict:

@@ -9,7 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from coefficients.json_text import laid_out, read_object
 from fitting.goal import Norm, Rounding, Side
 
-SCHEMA = "shadefit.table/1"
+SCHEMA = "shadefit.table/2"
+# An expression has at most this many steps.
+MAX_STEPS = 4096
 # A larger file is refused before it is parsed. All real tables are far smaller.
 MAX_BYTES = 4 << 20
 
@@ -33,14 +35,22 @@ Shape = Annotated[
 ]
 
 
+Operand = Number | Annotated[str, Field(max_length=64)]
+Identifier = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,63}$")]
+
+
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class Argument(_Part):
-    """One argument: its name, its unit ('rad' or '1'), and its domain, a closed interval."""
+    """One argument: its name, its unit ('rad' or '1'), and its domain, a closed interval.
+
+    `symbol` is the argument's symbol in the equation, if that is not the name.
+    """
 
     name: Text
+    symbol: Text | None = None
     unit: Literal["1", "rad"]
     domain: Annotated[list[Number], Field(min_length=2, max_length=2)]
 
@@ -80,11 +90,65 @@ class GoalRecord(_Part):
     bounded: bool = False
 
 
-class Reference(_Part):
-    """The method of the exact values, and a bound on its error at the points of the fit."""
+class Expression(_Part):
+    """The form as data: the steps that compute its value (coefficients/expression.py)."""
 
-    leg: Literal["closed_form", "quadrature", "monte_carlo"]
+    steps: Annotated[
+        list[Annotated[list[Operand], Field(min_length=2, max_length=4)]],
+        Field(max_length=MAX_STEPS),
+    ]
+    value: Operand
+
+
+class About(_Part):
+    """What is known of a user's quantity, so that code can be written without the user's file.
+
+    `function` is the name of the exported function. `arguments` maps the names of the axes to those
+    of the function's arguments, in the order of the call. `codomain` is the interval of the exact
+    values, if it is stated.
+    """
+
+    symbol: Text
+    definition: Text
+    meaning: Text
+    function: Identifier
+    arguments: Annotated[dict[Text, Identifier], _CLOSED, Field(min_length=1, max_length=8)]
+    codomain: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
+
+
+class DataFile(_Part):
+    """The data that a form was fitted to: the file's name and SHA-256, and how many rows it has.
+
+    `held_out` rows were not fitted: they judge the fit.
+    """
+
+    name: Text
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    rows: Annotated[int, Field(ge=1)]
+    held_out: Annotated[int, Field(ge=0)]
+
+
+class Reference(_Part):
+    """The method of the exact values, and a bound on its error at the points of the fit.
+
+    Of data, the error is the largest standard deviation, or 0 if none is stated.
+    """
+
+    leg: Literal["closed_form", "quadrature", "monte_carlo", "data"]
     error: Annotated[Number, Field(ge=0)]
+    data: DataFile | None = None
+
+
+class Uncertainty(_Part):
+    """How well the points of a fit determine its coefficients.
+
+    `standard_errors` has one number for each flat coefficient; `condition` is that of the scaled
+    matrix of derivatives. If not `unique`, other coefficients fit as well.
+    """
+
+    standard_errors: Vector | None = None
+    condition: Positive | None = None
+    unique: bool
 
 
 class ErrorRecord(_Part):
@@ -159,10 +223,10 @@ class Table(_Part):
     """The coefficients of a form of one quantity, with their errors, proofs and origin.
 
     A fitted table has `grid`, `weight`, `reference`, `errors`, `certificates` and `provenance`. A
-    published table has `publication` instead.
+    published table has `publication` instead. Tables of the older schema /1 have no `expression`.
     """
 
-    schema_: Literal["shadefit.table/1"] = Field(alias="schema")
+    schema_: Literal["shadefit.table/1", "shadefit.table/2"] = Field(alias="schema")
     name: Name
     quantity: Name
     form: Name
@@ -171,12 +235,15 @@ class Table(_Part):
     arguments: Annotated[list[Argument], Field(min_length=1, max_length=8)]
     coefficients: Vector | Annotated[list[Row], Field(min_length=1, max_length=64)]
     coefficient_names: Labels | Annotated[list[LabelRow], Field(min_length=1, max_length=64)]
+    expression: Expression | None = None
+    about: About | None = None
     grid: GridRecord | None = None
     weight: Name | None = None
     goal: GoalRecord | None = None
     reference: Reference | None = None
     errors: ErrorRecords | None = None
     certificates: Certificates | None = None
+    uncertainty: Uncertainty | None = None
     provenance: Provenance | None = None
     publication: Publication | None = None
 
@@ -187,6 +254,11 @@ class Table(_Part):
                 f"coefficients have shape {_shape(self.coefficients)}, "
                 f"their names {_shape(self.coefficient_names)}"
             )
+        if self.schema_ == SCHEMA and self.expression is None:
+            raise ValueError("expression is missing")
+        names = {each.name for each in self.arguments}
+        if self.about is not None and set(self.about.arguments) != names:
+            raise ValueError("about.arguments: expected is a name for each argument")
         return self
 
     @property

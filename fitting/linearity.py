@@ -18,6 +18,7 @@ from jax import Array
 from fitting.form import Form
 from programs.bounding.denominators import ALLOWED, operands
 from programs.functions import Function, Parameter
+from programs.jax_operations import JAX_OPERATIONS
 from programs.operations import OPERATIONS
 from programs.program import Program, interpret, subprogram
 from programs.tracing.tracer import trace
@@ -213,7 +214,7 @@ def derived_positive(form: Form) -> Callable[..., Array]:
         if not chosen:
             return jnp.ones(())
         inputs = [*(jnp.ravel(coefficients)[k] for k in range(size)), *map(jnp.asarray, point)]
-        return functools.reduce(jnp.minimum, interpret(wanted, inputs, _JAX, jnp.asarray))
+        return functools.reduce(jnp.minimum, interpret(wanted, inputs, JAX_OPERATIONS, jnp.asarray))
 
     return positive
 
@@ -230,33 +231,3 @@ def _holding(program: Program, size: int) -> set[int]:
         if any(type(operand) is int and operand in held for operand in step.operands):
             held.add(number)
     return held
-
-
-_JAX_NAMES = {
-    "add": jnp.add,
-    "sub": jnp.subtract,
-    "mul": jnp.multiply,
-    "div": jnp.divide,
-    "neg": jnp.negative,
-    "abs": jnp.abs,
-    "sqrt": jnp.sqrt,
-    "rsqrt": lambda x: 1 / jnp.sqrt(x),
-    "min": jnp.minimum,
-    "max": jnp.maximum,
-    "lt": jnp.less,
-    "le": jnp.less_equal,
-    "gt": jnp.greater,
-    "ge": jnp.greater_equal,
-    "eq": jnp.equal,
-    "ne": jnp.not_equal,
-    "and": jnp.logical_and,
-    "or": jnp.logical_or,
-    "not": jnp.logical_not,
-    "select": jnp.where,
-    "pow": jnp.power,
-    "asin": jnp.arcsin,
-    "acos": jnp.arccos,
-    "atan": jnp.arctan,
-    "atan2": jnp.arctan2,
-}
-_JAX = {name: _JAX_NAMES.get(name) or getattr(jnp, name) for name in OPERATIONS}

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from integrals.data import Data
 from integrals.sampling import Sampling
 
 # How points are distributed along an axis: evenly, evenly in the logarithm, or as the squares of
@@ -136,6 +137,9 @@ class Reference:
     number of points that `estimates` evaluates at once. `options_at` takes points (n, axes) and
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
     `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
+
+    A quantity that is only known by its `data` has no leg: it has values at the data's own points.
+    A quantity that is only known by a table has neither legs nor data.
     """
 
     name: str
@@ -150,6 +154,7 @@ class Reference:
     batch: int = 8192
     options_at: Callable[[np.ndarray], dict[str, Any]] = lambda _: {}
     codomain: tuple[float, float] = (0.0, 1.0)
+    data: Data | None = None
 
     @property
     def legs(self) -> dict[str, Leg]:
@@ -163,8 +168,19 @@ class Reference:
 
     @property
     def best_leg(self) -> str:
-        """The name of the most exact leg."""
-        return next(iter(self.legs))
+        """The name of the most exact leg. Raises ValueError if there is no leg."""
+        for name in self.legs:
+            return name
+        if self.data:
+            raise ValueError(f"{self.name} is known at the points of its data only")
+        raise ValueError(f"the exact values of {self.name} are not known: load its problem (-p)")
+
+    @property
+    def compared_with(self) -> str:
+        """What the errors of forms are measured against, for texts."""
+        if self.data is not None:
+            return "the data's own points"
+        return "the integral" if self.quadrature or self.monte_carlo else "the exact values"
 
     def value(self, *arguments) -> Array:
         """Evaluate the most exact leg at one point."""

@@ -15,6 +15,7 @@ and quadrature also work under `jax.grad`, by the axes.
 """
 
 import functools
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -23,6 +24,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from integrals.data import Data
 from integrals.monte_carlo import Sequence as PointSequence
 from integrals.monte_carlo import mean_estimate, unit_points
 from integrals.reference import Axis, Estimate, Leg, Reference, leg
@@ -35,6 +37,9 @@ from integrals.user_functions import check_function, check_map, check_range, pro
 
 # The error of a closed form without a stated error, in units of ε times its value.
 ROUNDINGS = 8
+
+# The codomain of a quantity that does not state one.
+EVERYTHING = (-math.inf, math.inf)
 
 _ORDER = ("closed_form", "quadrature", "monte_carlo")
 
@@ -49,11 +54,13 @@ class Source:
     """Independent methods for one quantity, without its axes.
 
     `builders` has for each leg's name a function from the axes to the leg. `at_once` is the number
-    of values of the integrand that a leg needs in memory for one point.
+    of values of the integrand that a leg needs in memory for one point. `function` is that of the
+    closed form, if there is one.
     """
 
     builders: Mapping[str, Callable[[tuple[Axis, ...]], Leg]]
     at_once: Mapping[str, int]
+    function: Callable | None = None
 
     def legs(self, axes: Sequence[Axis]) -> dict[str, Leg]:
         """Return the legs by name: 'closed_form', 'quadrature', 'monte_carlo', if they exist.
@@ -69,7 +76,11 @@ class Source:
             return NotImplemented
         for name in self.builders.keys() & other.builders.keys():
             raise ValueError(f"two sources have a leg {name}: allowed is one of each")
-        return Source({**self.builders, **other.builders}, {**self.at_once, **other.at_once})
+        return Source(
+            {**self.builders, **other.builders},
+            {**self.at_once, **other.at_once},
+            self.function or other.function,
+        )
 
 
 def closed_form(function: Callable, error: Place | None = None) -> Source:
@@ -92,7 +103,7 @@ def closed_form(function: Callable, error: Place | None = None) -> Source:
 
         return leg(*axes)(evaluate)
 
-    return Source({"closed_form": build}, {"closed_form": 1})
+    return Source({"closed_form": build}, {"closed_form": 1}, function)
 
 
 def quadrature(
@@ -239,7 +250,7 @@ def monte_carlo(
 
 
 def make_reference(
-    source: Source | Sequence[Source],
+    source: Source | Data | Sequence[Source],
     *,
     name: str,
     axes: Sequence[Axis],
@@ -247,27 +258,53 @@ def make_reference(
     meaning: str = "",
     definition: str = "",
     sampling: Sampling | None = None,
+    codomain: tuple[float, float] = EVERYTHING,
 ) -> Reference:
     """Return the reference of a quantity with these axes. A sequence of sources is added up.
 
-    `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does.
+    `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does, and for data
+    outside the axes' domains or with another number of axes.
     """
-    total = source if isinstance(source, Source) else functools.reduce(Source.__add__, source)
-    legs = total.legs(axes)
-    at_once = total.at_once[next(iter(legs))]
-    batch = max(1, min(_LARGEST_BATCH, _VALUES_AT_ONCE // at_once))
+    legs, data, batch = {}, None, _LARGEST_BATCH
+    if isinstance(source, Data):
+        data, default = source, Sampling(fitted=11, checked=11, judged=11, climbs=False)
+        _require_inside(data, axes)
+    else:
+        total = source if isinstance(source, Source) else functools.reduce(Source.__add__, source)
+        legs = total.legs(axes)
+        at_once = total.at_once[next(iter(legs))]
+        batch = max(1, min(_LARGEST_BATCH, _VALUES_AT_ONCE // at_once))
+        default = _sampling(len(axes), at_once)
     return Reference(
         name=name,
         symbol=symbol or name,
         meaning=meaning,
         definition=definition,
         axes=tuple(axes),
-        sampling=sampling or _sampling(len(axes), at_once),
+        sampling=sampling or default,
         batch=batch,
         closed_form=legs.get("closed_form"),
         quadrature=legs.get("quadrature"),
         monte_carlo=legs.get("monte_carlo"),
+        codomain=codomain,
+        data=data,
     )
+
+
+def _require_inside(data: Data, axes: Sequence[Axis]) -> None:
+    """Raise ValueError unless all points of the data are in the domains of the axes."""
+    if data.points.shape[1] != len(axes):
+        names = ", ".join(axis.name for axis in axes)
+        raise ValueError(
+            f"{data.source} has {data.points.shape[1]} columns of points: expected is one for each "
+            f"of {names}"
+        )
+    for k, axis in enumerate(axes):
+        for row in np.flatnonzero(~axis.contains(data.points[:, k]))[:1]:
+            raise ValueError(
+                f"{data.source}, row {row + 1}: {axis.name} = {data.points[row, k]:g} is outside "
+                f"its domain {axis.domain}"
+            )
 
 
 def _sampling(axes: int, at_once: int) -> Sampling:

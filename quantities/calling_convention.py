@@ -175,8 +175,12 @@ def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
 def _equation(fitted: FittedForm) -> str:
     """Return a form's equation, such as 'Eq. 3', or for a form of a family the family's name."""
     form = fitted.form
-    short = form.equation.replace("Eq. (", "Eq. ").rstrip(")")
-    return short if form.shape is None else form.name
+    if form.shape is not None:
+        return form.name
+    equation = form.equation
+    if equation.startswith("Eq. (") and equation.endswith(")"):
+        return equation.replace("Eq. (", "Eq. ").rstrip(")")
+    return equation
 
 
 def _result_count(fitted: FittedForm) -> int:

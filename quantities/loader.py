@@ -12,6 +12,11 @@ from pathlib import Path
 from quantities.problem import Problem
 from quantities.registry import register, unregister
 
+_PROJECT = Path(__file__).parents[1]
+_PACKAGES = (
+    *("shading", "integrals", "programs", "fitting", "quantities", "coefficients"),
+    "shadefit",
+)
 # What each file declared when it was last loaded, and how the file was named then. Loading it again
 # replaces this.
 _LOADED: dict[Path, tuple[str, list[Problem]]] = {}
@@ -39,6 +44,8 @@ def load_problems(named: str) -> list[Problem]:
     if wanted and wanted not in found:
         raise ValueError(f"{path} declares no {wanted!r}: allowed are {', '.join(found)}")
     chosen = [found[wanted]] if wanted else list(found.values())
+    for problem in chosen:
+        _require_published_forms(problem, path)
     _, before = _LOADED.pop(path.resolve(), (named, []))
     for problem in before:
         unregister(problem.name)
@@ -67,9 +74,41 @@ def _declared(path: Path) -> list[Problem]:
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        raise ProblemFileError(_own_traceback(error, path)) from None
+        line = _line_of_misuse(error, path)
+        if line is None:
+            raise ProblemFileError(_own_traceback(error, path)) from None
+        place = "" if str(error).startswith(f"{path.name}:") else f"{path.name}:{line}: "
+        raise ValueError(f"{place}{error}") from None
     values = [value for key, value in vars(module).items() if not key.startswith("__")]
     return list(dict.fromkeys(value for value in values if isinstance(value, Problem)))
+
+
+def _require_published_forms(problem: Problem, path: Path) -> None:
+    """Raise ValueError if published constants do not belong to a form of the quantity."""
+    for each in problem.published:
+        try:
+            size = problem.find_form(each.form).size
+        except ValueError as error:
+            raise ValueError(f"{path}: published constants of {problem.name}: {error}") from None
+        if size != len(each.coefficients):
+            raise ValueError(
+                f"{path}: published constants of {problem.name}: {len(each.coefficients)} given, "
+                f"form {each.form!r} has {size} coefficients"
+            )
+
+
+def _line_of_misuse(error: Exception, path: Path) -> int | None:
+    """Return the line of a file that called this project wrongly; None for an error of its own.
+
+    This project reports misuse by ValueError, or RuntimeError.
+    """
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame.lineno for frame in frames if Path(frame.filename) == path]
+    last = Path(frames[-1].filename)
+    ours = last.is_relative_to(_PROJECT) and last.relative_to(_PROJECT).parts[0] in _PACKAGES
+    if own and ours and type(error) in (ValueError, RuntimeError):
+        return own[-1]
+    return None
 
 
 def _own_traceback(error: Exception, path: Path) -> str:

@@ -1,6 +1,6 @@
 """`Problem`, the object that holds all about a quantity, and the objects that it consists of."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite, pi
 from typing import Any
@@ -154,16 +154,30 @@ class PlotHints:
         return self.axes.get(axis.name) or AxisHint.default(axis)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class Published:
+    """Constants in print: the name of the form that they belong to, their values, and the source.
+
+    `coefficients` are in the order of the form's. The source is a citation.
+    """
+
+    form: str
+    coefficients: Sequence[float]
+    source: str
+
+
+@dataclass(eq=False)
 class Problem:
     """A quantity: its exact values, the forms that approximate it, and how it is called and drawn.
 
     * `reference`: the exact values and the axes.
-    * `default`: the form that `shadefit refit NAME` fits.
+    * `forms`: the forms that belong to no family. `shadefit refit NAME` fits the first one.
+      `families`: the families, by name.
     * `calling`: the names, arguments and clamps of the exported functions.
-    * `forms`: the further forms that belong to no family. `families`: the families, by name.
+    * `published`: constants in print, which others are compared with. The built-in quantities have
+      theirs in files instead.
     * `candidates`: returns the forms that a search tries. Its argument maps the names of axes to
-      the lower ends of their domains, such as {"alpha": 0.15}. None: `default` and `forms`.
+      the lower ends of their domains, such as {"alpha": 0.15}. None: `forms`.
     * `closed_form`: the exact value in float64, as a function of the axes that can be traced; the
       report's explorer evaluates it. `exact_code`: the same for shaders.
     * `plot`: how the quantity is drawn; None stands for default hints.
@@ -174,9 +188,9 @@ class Problem:
     """
 
     reference: Reference
-    default: Form
+    forms: Sequence[Form]
     calling: CallingConvention
-    forms: tuple[Form, ...] = ()
+    published: Sequence[Published] = ()
     families: Mapping[str, Family] = field(default_factory=dict)
     candidates: Callable[[Mapping[str, float]], Iterator[Form]] | None = None
     closed_form: Callable[..., Array] | None = None
@@ -203,20 +217,32 @@ class Problem:
     @property
     def description(self) -> str:
         """The symbol and the meaning of the quantity, as one line of text."""
-        return f"{self.symbol}, {self.reference.meaning}"
+        meaning = self.reference.meaning
+        return f"{self.symbol}, {meaning}" if meaning else self.symbol
+
+    @property
+    def default(self) -> Form:
+        """The form that `shadefit refit NAME` fits. Raises ValueError if there is no form."""
+        if not self.forms:
+            raise ValueError(f"{self.name} has no form: add one, such as {self.name}.rational(…)")
+        return self.forms[0]
 
     @property
     def single_forms(self) -> dict[str, Form]:
         """The forms that belong to no family, by name; the default one comes first."""
-        return {form.name: form for form in (self.default, *self.forms)}
+        return {form.name: form for form in self.forms}
 
     def tried(self, lower: Mapping[str, float]) -> Iterator[Form]:
         """Yield the forms that a search tries."""
         if self.candidates is not None:
             return self.candidates(lower)
-        return iter(self.single_forms.values())
+        return iter(self.forms)
 
-    def form(self, name: str, shape: dict[str, Any] | None) -> Form:
+    def has_form(self, name: str, shape: dict[str, Any] | None) -> bool:
+        """Return whether there is a form, or for a shape a family, with this name."""
+        return name in (self.single_forms if shape is None else self.families)
+
+    def find_form(self, name: str, shape: dict[str, Any] | None = None) -> Form:
         """Return the form with a name, or the form with a shape from the family with that name.
 
         `shape` is None for a form that belongs to no family. Raises ValueError for a name that is

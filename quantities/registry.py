@@ -1,7 +1,15 @@
-"""The known quantities, by name. `register` adds a user's quantity while the program runs."""
+"""The known quantities, by name. `register` adds a user's quantity while the program runs.
+
+An installed package offers its quantities by entry points of the group `shadefit.problems`: the
+name of the entry point is that of the quantity. The package is imported when the name is asked for.
+"""
+
+from importlib.metadata import entry_points
 
 from quantities.fuzz import PS, VELVET, G, Q, R
 from quantities.problem import Problem
+
+GROUP = "shadefit.problems"
 
 _PROBLEMS: dict[str, Problem] = {each.name: each for each in (PS, G, Q, R, VELVET)}
 
@@ -12,10 +20,25 @@ def problems() -> dict[str, Problem]:
 
 
 def problem(name: str) -> Problem:
-    """Return the quantity with a name. Raises ValueError if there is none."""
+    """Return the quantity with a name; load it if an installed package offers it.
+
+    Raises ValueError if there is none.
+    """
+    if name not in _PROBLEMS and name in installed():
+        (point,) = list(entry_points(group=GROUP, name=name))[:1]
+        found = point.load()
+        if not isinstance(found, Problem) or found.name != name:
+            raise ValueError(f"{point.value} is no shadefit.Problem called {name!r}")
+        register(found)
     if name not in _PROBLEMS:
-        raise ValueError(f"no quantity is called {name!r}: allowed are {', '.join(_PROBLEMS)}")
+        allowed = ", ".join(dict.fromkeys([*_PROBLEMS, *installed()]))
+        raise ValueError(f"no quantity is called {name!r}: allowed are {allowed}")
     return _PROBLEMS[name]
+
+
+def installed() -> list[str]:
+    """Return the names of the quantities that installed packages offer; nothing is imported."""
+    return sorted(entry_points(group=GROUP).names)
 
 
 def register(new: Problem) -> Problem:

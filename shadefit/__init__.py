@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from integrals import R as R
     from integrals import Reference as Reference
     from integrals import Sampling as Sampling
+    from integrals.data import samples as samples
+    from integrals.data import table as table
     from integrals.reference import leg as leg
     from integrals.sources import closed_form as closed_form
     from integrals.sources import hemisphere as hemisphere
@@ -56,7 +58,6 @@ if TYPE_CHECKING:
     from programs import Parameter as Parameter
     from programs import function as function
     from programs import write_source as write_source
-    from quantities import Problem as Problem
     from quantities import problem as problem
     from quantities import problems as problems
     from quantities import register as register
@@ -64,6 +65,9 @@ if TYPE_CHECKING:
     from quantities.calling_convention import CallingConvention as CallingConvention
     from quantities.problem import AxisHint as AxisHint
     from quantities.problem import PlotHints as PlotHints
+    from quantities.problem import Published as Published
+    from shadefit.declaration import Problem as Problem
+    from shadefit.result import Result as Result
 
 _HOMES = {
     "coefficients.catalogue": ("Entry", "load", "resolve"),
@@ -76,14 +80,17 @@ _HOMES = {
         *("PS", "G", "Q", "R", "VELVET"),
         *("Axis", "Estimate", "Reference", "Sampling"),
     ),
+    "integrals.data": ("samples", "table"),
     "integrals.reference": ("leg",),
     "integrals.sources": (
         *("closed_form", "hemisphere", "make_reference", "monte_carlo", "quadrature", "sphere"),
     ),
     "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
-    "quantities": ("Problem", "problem", "problems", "register"),
+    "quantities": ("problem", "problems", "register"),
     "quantities.calling_convention": ("Argument", "CallingConvention"),
-    "quantities.problem": ("AxisHint", "PlotHints"),
+    "quantities.problem": ("AxisHint", "PlotHints", "Published"),
+    "shadefit.declaration": ("Problem",),
+    "shadefit.result": ("Result",),
 }
 _MODULES = {name: module for module, names in _HOMES.items() for name in names}
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from fitting.form import Form
 from fitting.goal import LEAST_SQUARES, Goal
-from fitting.points.scattered import scattered_points
+from fitting.points.scattered import data_points, scattered_points
 from integrals.reference import Axis, Estimate, Reference
 
 SEED = 20200819
@@ -39,8 +39,24 @@ class Sample:
 def sample_of(form: Form, goal: Goal = LEAST_SQUARES, measure: str = "uniform") -> Sample:
     """Return the sample on which a form is fitted; `measure` names a measure of the quantity."""
     reference = form.reference
+    if reference.data is not None:
+        return _sample_of_data(form, goal, measure)
     points = scattered_points(reference, form.axes, reference.sampling.fitted, SEED)
     return _sample(points, _estimates(reference, form.axes), form, goal, measure)
+
+
+def _sample_of_data(form: Form, goal: Goal, measure: str) -> Sample:
+    """Return the rows of the data that are not held out; least squares weighs them by 1/σ²."""
+    data = form.reference.data
+    assert data is not None
+    points, values, weights = data_points(form, data.fitted)
+    if len(points) < form.size:
+        raise ValueError(
+            f"{form.name} has {form.size} coefficients, but {data.source} has only {len(points)} "
+            "rows to fit: allowed is a form with fewer"
+        )
+    error = 0.0 if data.sigma is None else float(data.sigma.max())
+    return Sample(points, values, error, scale_at(points, values, form, goal, measure) * weights)
 
 
 def sample_at(points: np.ndarray, form: Form, goal: Goal, measure: str) -> Sample:

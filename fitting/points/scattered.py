@@ -38,14 +38,40 @@ def scattered_points(
 def judging_points(domain: Form | Domain) -> tuple[np.ndarray, np.ndarray]:
     """Return the points (n, axes) at which a form's rms error is measured, and the exact values.
 
-    The points are uniform in the domain, and no fit uses them. The values are (n,).
+    The points are uniform in the domain, and no fit uses them. Of data, they are the rows that are
+    held out, or if there are none, all rows. The values are (n,).
     """
+    if domain.reference.data is not None:
+        return data_points(domain, domain.reference.data.judging)[:2]
     return _judging(domain.reference, domain.axes)
 
 
 def checking_points(domain: Form | Domain, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the scattered points (n, axes) at which large errors are sought, and exact values."""
+    """Return the scattered points (n, axes) at which large errors are sought, and exact values.
+
+    Of data, they are those of `judging_points`.
+    """
+    if domain.reference.data is not None:
+        return judging_points(domain)
     return _checking(domain.reference, domain.axes, seed)
+
+
+def data_points(
+    domain: Form | Domain, rows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the points (n, axes) of some rows of the data, their values (n,) and weights (n,).
+
+    Rows outside the domain are left out. Raises ValueError if none is inside.
+    """
+    data = domain.reference.data
+    assert data is not None
+    inside = np.all(
+        [axis.contains(data.points[rows, k]) for k, axis in enumerate(domain.axes)], axis=0
+    )
+    rows = rows[inside]
+    if not len(rows):
+        raise ValueError(f"{data.source} has no row in the domain of the form")
+    return data.points[rows], data.values[rows], data.weights(rows)
 
 
 @functools.lru_cache(maxsize=16)

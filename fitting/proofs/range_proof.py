@@ -33,10 +33,16 @@ def certify_range(fitted: FittedForm, tightness: float = TIGHTNESS) -> Bounds | 
     points = scattered_points(form.reference, form.axes, PROBES, PROBES)
 
     lower, upper = form.reference.codomain
-    allowed = lower - ROUNDING * (upper - lower), upper + ROUNDING * (upper - lower)
+    width = upper - lower
+    allowed = (
+        (lower - ROUNDING * width, upper + ROUNDING * width)
+        if np.isfinite(width)
+        else (lower, upper)
+    )
 
     def settled(below, above, least, most):
-        low, high = max(allowed[0], least - tightness), min(allowed[1], most + tightness)
+        room = tightness * (width if np.isfinite(width) else most - least)
+        low, high = max(allowed[0], least - room), min(allowed[1], most + room)
         return (below >= low) & (above <= high)
 
     program = traced(fitted, lambda *point: form(constants, *point), form.axes)

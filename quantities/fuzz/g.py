@@ -26,7 +26,7 @@ def exact_functions(_: str) -> tuple[Function, ...]:
 
 G = Problem(
     reference=integrals.G,
-    default=RATIONAL_G,
+    forms=(RATIONAL_G,),
     families={
         "decay-g": Family(
             decay_g, {"decay": DECAYS, "rate": tuple(RATES), "factor": tuple(FACTORS)}

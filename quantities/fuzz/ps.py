@@ -40,7 +40,7 @@ def exact_functions(precision: str) -> tuple[Function, ...]:
 
 PS = Problem(
     reference=integrals.PS,
-    default=RATIONAL_PS,
+    forms=(RATIONAL_PS,),
     families={
         "one-root-ps": Family(
             one_root_ps,

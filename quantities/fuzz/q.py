@@ -19,7 +19,7 @@ def exact_functions(_: str) -> tuple[Function, ...]:
 
 Q = Problem(
     reference=integrals.Q,
-    default=QUADRATIC_Q,
+    forms=(QUADRATIC_Q,),
     families={
         "pole-q": Family(
             pole_q, {"structure": tuple(STRUCTURES), "terms": range(9), "poles": range(5)}

@@ -20,7 +20,7 @@ _AZIMUTH_RULE = (np.arange(_NODES) + 0.5) * np.pi / _NODES, np.full(_NODES, 1 / 
 
 R = Problem(
     reference=integrals.R,
-    default=RATIONAL_R,
+    forms=(RATIONAL_R,),
     families={
         "monomial-r": Family(
             monomial_r,

@@ -19,7 +19,7 @@ def exact_functions(_: str) -> tuple[Function, ...]:
 
 VELVET = Problem(
     reference=integrals.VELVET,
-    default=CONSERVATIVE_NORM,
+    forms=(CONSERVATIVE_NORM,),
     calling=CallingConvention(
         name="FuzzVelvetNorm",
         summary="r(k), which scales the velvet phase function, from below; clamps to the domain.",

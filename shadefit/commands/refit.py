@@ -21,11 +21,14 @@ from shadefit.completion import complete_quantity
 if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from coefficients.table import Table
+    from fitting import Form
     from quantities import Problem
 
 ALL = "all"
 # Two fits run at a time: while JAX compiles one on one core, the other uses a second core.
 WORKERS = 2
+# Nodes an axis, as in the paper.
+_NODES = 65
 
 
 def refit(
@@ -40,9 +43,20 @@ def refit(
         Path | None,
         typer.Option(help="Folder for NAME.json; by default the packaged table is replaced."),
     ] = None,
+    form: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Form of a user's quantity to fit, or all; by default its first. May be given "
+            "again."
+        ),
+    ] = None,
     grid: Annotated[
-        int, typer.Option(help="Nodes along each axis of the grid, 9 to 129; not for best/NAME.")
-    ] = 65,
+        int | None,
+        typer.Option(
+            help="Nodes along each axis of the grid, 9 to 129; by default 65. best/NAME, and a "
+            "user's quantity by default, are fitted to scattered points instead."
+        ),
+    ] = None,
     weight: Annotated[
         str,
         typer.Option(
@@ -59,21 +73,22 @@ def refit(
 ) -> None:
     """Fit the forms of the paper, or those of best tables, to exact values, and write tables."""
     given = goal_fields(norm, side, rounding, relative, bounded)
-    run(names or [], out, grid, weight, given, json)
+    run(names or [], out, grid, weight, given, json, form or [])
 
 
 def run(
     names: list[str],
     out: Path | None,
-    grid: int,
+    grid: int | None,
     weight: str,
     given: dict[str, Any],
     as_json: bool,
+    forms: list[str] | None = None,
 ) -> None:
     """Refit tables, and write `out`/NAME.json for each. If any fit fails, nothing is written.
 
     If `out` is None, the packaged tables are replaced. `given` has the fields of the goal that
-    replace those of the table's own goal.
+    replace those of the table's own goal. `forms` names those to fit of users' quantities.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -89,16 +104,17 @@ def run(
                 f"{owner.name} has a goal of its own:{_options(given)} is for the others"
             )
         chosen.remove(owner)
-    folders = [out or _own_folder(each.name) for each in chosen]
+    chosen = [part for each in chosen for part in _parts(each, forms or [])]
+    folders = [out or _own_folder(_name(each)) for each in chosen]
     for folder in set(folders):
         require_writable(folder)
     with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
 
-        def make(each: "Problem | Entry") -> "Table":
-            task = progress.add_task(each.name, total=None)
+        def make(each: "tuple[Problem, Form] | Entry") -> "Table":
+            task = progress.add_task(_name(each), total=None)
 
             def tell(stage: str) -> None:
-                progress.update(task, description=f"{each.name}: {stage}")
+                progress.update(task, description=f"{_name(each)}: {stage}")
 
             table = _table(each, grid, weight, given, tell)
             tell("done")
@@ -127,8 +143,11 @@ def selection(names: list[str]) -> "list[Problem | Entry]":
     those of the user's problem files or, if there are none, for all.
     """
     from coefficients.catalogue import names_of_best, resolve
-    from quantities import problems
+    from quantities import problem, problems
+    from quantities.registry import installed
 
+    for name in set(names) & set(installed()):
+        problem(name)  # Loads it.
     every, best = problems(), names_of_best()
     names = names or [owner.name for owner in every.values() if not owner.topic]
     unknown = [name for name in names if name not in (*every, ALL, *best)]
@@ -169,9 +188,30 @@ def _own_folder(name: str) -> Path:
     return folder.relative_to(here) if folder.is_relative_to(here) else folder
 
 
+def _parts(each: "Problem | Entry", forms: list[str]) -> "list[tuple[Problem, Form] | Entry]":
+    """Return what is fitted: a best table, or a quantity with each of its forms that are wanted."""
+    from quantities import Problem
+
+    if not isinstance(each, Problem):
+        return [each]
+    if not forms or each.topic:
+        return [(each, each.default)]
+    if ALL in forms:
+        return [(each, form) for form in each.forms]
+    return [(each, each.find_form(name)) for name in dict.fromkeys(forms)]
+
+
+def _name(each: "tuple[Problem, Form] | Entry") -> str:
+    """Return the name of the table: that of the quantity for its first form."""
+    if not isinstance(each, tuple):
+        return each.name
+    owner, form = each
+    return owner.name if form is owner.default else f"{owner.name}-{form.name}"
+
+
 def _table(
-    each: "Problem | Entry",
-    grid: int,
+    each: "tuple[Problem, Form] | Entry",
+    grid: int | None,
     weight: str,
     given: dict[str, Any],
     tell: Callable[[str], None],
@@ -179,21 +219,25 @@ def _table(
     from coefficients.record import table_of
     from fitting.fit import fit
     from fitting.goal import Goal
-    from quantities import Problem
     from quantities.loader import option_for
 
-    if isinstance(each, Problem):
-        file = "".join(f" {shlex.quote(word)}" for word in option_for(each))
-        command = (
-            f"shadefit refit{file} {each.name} --grid {grid} --weight {weight}{_options(given)}"
-        )
-        return table_of(fit(each.default, Goal(**given), grid, weight, tell), command)
+    if isinstance(each, tuple):
+        owner, form = each
+        # The forms of the paper are fitted on a grid, as the paper did.
+        nodes = _NODES if grid is None and owner.topic else grid
+        file = "".join(f" {shlex.quote(word)}" for word in option_for(owner))
+        other = "" if form is owner.default else f" --form {shlex.quote(form.name)}"
+        on_grid = "" if nodes is None else f" --grid {nodes}"
+        weighted = f" --weight {weight}" if owner.topic else ""
+        command = f"shadefit refit{file} {owner.name}{other}{on_grid}{weighted}{_options(given)}"
+        made = fit(form, Goal(**given), nodes, weight, tell)
+        return table_of(made, command, _name(each), owner)
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()
     goal = Goal(**{**own, **given})
     made = fit(each.require_fitted().form, goal, measure=weight, progress=tell)
     options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
-    return table_of(made, f"shadefit refit {each.name}{options}", table.name)
+    return table_of(made, f"shadefit refit {each.name}{options}", table.name, each.problem)
 
 
 def _options(given: dict[str, Any]) -> str:

@@ -152,8 +152,19 @@ def test_a_file_in_a_folder_called_exact_is_a_file(tmp_path, monkeypatch):
         resolve("exact/none.json")
 
 
-def test_a_file_about_an_unknown_quantity_is_refused(tmp_path):
-    data = {**json.loads(serialise(table_of("q"))), "quantity": "s"}
+def test_a_file_about_an_unknown_quantity_is_read_by_its_expression(tmp_path):
+    data = {**json.loads(serialise(table_of("best/q-9"))), "quantity": "s"}
+    path = tmp_path / "s.json"
+    path.write_text(json.dumps(data))
+    entry = resolve(str(path))
+    assert entry.problem.name == "s"
+    assert not entry.problem.reference.legs
+    assert float(entry.require_fitted()(0.2)) == float(resolve("best/q-9").require_fitted()(0.2))
+
+
+def test_a_file_about_an_unknown_quantity_without_expression_is_refused(tmp_path):
+    data = {**json.loads(serialise(table_of("q"))), "quantity": "s", "schema": "shadefit.table/1"}
+    del data["expression"]
     path = tmp_path / "s.json"
     path.write_text(json.dumps(data))
     with pytest.raises(ValueError, match="no quantity is called 's': allowed are ps, g, q, r, vel"):
@@ -163,13 +174,15 @@ def test_a_file_about_an_unknown_quantity_is_refused(tmp_path):
 def test_a_file_of_a_shape_without_slopes_is_read(tmp_path):
     """Surfaces of degree 0 are allowed, and are constants."""
     data = json.loads(serialise(table_of("best/ps-11")))
-    form = problem("ps").form("one-root-ps", {**data["shape"], "degree": 0})
+    form = problem("ps").find_form("one-root-ps", {**data["shape"], "degree": 0})
     data.update(
         shape=form.shape,
         equation=form.equation,
         coefficients=[0.2, 0.5, 0.1, -0.9][: form.size] + [0.0] * (form.size - 4),
         coefficient_names=form.coefficient_names,
+        schema="shadefit.table/1",
     )
+    del data["expression"]
     path = tmp_path / "constant.json"
     path.write_text(json.dumps(data))
     assert resolve(str(path)).require_fitted().form is form

@@ -78,7 +78,7 @@ def test_a_fit_to_scattered_points_has_their_number_instead_of_nodes():
 
 
 def test_a_form_of_a_family_is_written_down_with_its_shape():
-    form = problem("g").form("tied-g", {"poles": 1, "root": 0})
+    form = problem("g").find_form("tied-g", {"poles": 1, "root": 0})
     table = table_of(fit_of(form.fitted(np.array([2.5, 0.1, 0.05]))), "make it")
     assert (table.form, table.shape) == ("tied-g", {"poles": 1, "root": 0})
 

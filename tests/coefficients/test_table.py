@@ -98,7 +98,7 @@ def test_keys_are_written_in_a_fixed_order_whatever_order_they_are_read_in():
     data = json.loads(TEXT)
     assert list(data) == [
         "schema", "name", "quantity", "form", "equation", "arguments", "coefficients",
-        "coefficient_names", "grid", "weight", "reference", "errors", "certificates", "provenance",
+        "coefficient_names", "expression", "grid", "weight", "reference", "errors", "certificates", "provenance",
     ]  # fmt: skip
     turned = json.dumps(backwards(data))
     assert turned != json.dumps(data)
@@ -117,7 +117,7 @@ SHIPPED_SCHEMA = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
 
 def test_the_shipped_schema_is_the_one_that_tables_are_held_to():
     assert json_schema() == SHIPPED_SCHEMA
-    assert SHIPPED_SCHEMA["properties"]["schema"]["const"] == SCHEMA
+    assert SHIPPED_SCHEMA["properties"]["schema"]["enum"] == ["shadefit.table/1", SCHEMA]
     assert SHIPPED_SCHEMA["additionalProperties"] is False
 
 
@@ -195,7 +195,7 @@ def drop(key):
 
 
 WRONG = {
-    "another schema": put("schema", "shadefit.table/2"),
+    "another schema": put("schema", "shadefit.table/3"),
     "no schema": drop("schema"),
     "no coefficients": drop("coefficients"),
     "no names": drop("coefficient_names"),

@@ -35,7 +35,7 @@ def test_an_open_end_stays_open():
 
 
 def test_forms_have_their_own_domain():
-    wide = problem("r").form(
+    wide = problem("r").find_form(
         "monomial-r",
         {"variable": "1-alpha", "numerator": [[0, 0]], "denominator": [], "least_alpha": 0.05},
     )

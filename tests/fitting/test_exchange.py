@@ -17,8 +17,8 @@ from quantities import problem
 from quantities.fuzz.supplement import QUADRATIC_Q
 from tests.fitting.toys import QUOTIENT, TOY, toy_form
 
-Q_FORM = problem("q").form("pole-q", {"structure": "one", "terms": 1, "poles": 1})
-R_FORM = problem("r").form(
+Q_FORM = problem("q").find_form("pole-q", {"structure": "one", "terms": 1, "poles": 1})
+R_FORM = problem("r").find_form(
     "monomial-r",
     {
         "variable": "1-alpha^2",
@@ -27,7 +27,7 @@ R_FORM = problem("r").form(
         "least_alpha": 0.15,
     },
 )
-ONE_ROOT = problem("ps").form("one-root-ps", {"skew": 0, "degree": 1, "least_alpha": 0.15})
+ONE_ROOT = problem("ps").find_form("one-root-ps", {"skew": 0, "degree": 1, "least_alpha": 0.15})
 
 
 @functools.cache

@@ -109,7 +109,7 @@ def test_a_goal_beyond_least_squares_is_pursued_from_the_fit_on_the_grid():
 
 def test_a_form_without_coefficients_is_measured_and_certified():
     shape = {"steps": 0, "degree": -1, "least_alpha": 0.15}
-    found = fit(problem("ps").form("cubic-ps", shape), Goal("linf", rounding="float32"))
+    found = fit(problem("ps").find_form("cubic-ps", shape), Goal("linf", rounding="float32"))
     assert found.certificate.holds
     assert 0.01 < found.off_grid.largest < 0.0125
     assert found.fitted.form.size == 0

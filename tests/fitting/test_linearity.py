@@ -14,7 +14,7 @@ from quantities import problem
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G, RATIONAL_PS, RATIONAL_R, terms
 from tests.fitting.toys import AXES, PLANE, QUOTIENT, toy_form
 
-MONOMIAL_R = problem("r").form(
+MONOMIAL_R = problem("r").find_form(
     "monomial-r",
     {
         "variable": "1-alpha^2",
@@ -91,7 +91,7 @@ def test_the_parts_give_the_values_of_the_form(name):
 
 @pytest.mark.parametrize("variable", ["1-alpha", "1-alpha^2", "(1-alpha)/(1+alpha)"])
 def test_forms_of_r_are_quotients_in_every_variable(variable):
-    form = problem("r").form("monomial-r", {**MONOMIAL_R.shape, "variable": variable})
+    form = problem("r").find_form("monomial-r", {**MONOMIAL_R.shape, "variable": variable})
     c, points = np.array([0.3, -0.2, 0.1, 0.4, 0.2]), np.array([[0.2, 0.1], [0.6, 1.2], [1, 0.4]])
     parts = linear_parts(form, points)
     assert parts is not None
@@ -100,7 +100,7 @@ def test_forms_of_r_are_quotients_in_every_variable(variable):
 
 @pytest.mark.parametrize("name", ["free", "one", "slope", "log"])
 def test_forms_of_q_without_poles_are_linear(name):
-    form = problem("q").form("pole-q", {"structure": name, "terms": 3, "poles": 0})
+    form = problem("q").find_form("pole-q", {"structure": name, "terms": 3, "poles": 0})
     points = sobol_points(form.axes, 4, seed=1)
     parts = linear_parts(form, points)
     assert parts is not None and parts.is_linear
@@ -115,16 +115,16 @@ def test_a_form_with_coefficients_below_is_not_called_linear():
 
 
 NO_QUOTIENTS = {
-    "roots of surfaces": problem("ps").form(
+    "roots of surfaces": problem("ps").find_form(
         "two-root-ps", {"terms": 3, "degree": 1, "least_alpha": 0.15}
     ),
-    "a coefficient in an exponent": problem("g").form(
+    "a coefficient in an exponent": problem("g").find_form(
         "decay-g", {"decay": "exponential", "rate": "scaled", "factor": "affine"}
     ),
-    "a pole whose place is a coefficient": problem("q").form(
+    "a pole whose place is a coefficient": problem("q").find_form(
         "pole-q", {"structure": "free", "terms": 1, "poles": 1}
     ),
-    "two poles": problem("q").form("pole-q", {"structure": "one", "terms": 1, "poles": 2}),
+    "two poles": problem("q").find_form("pole-q", {"structure": "one", "terms": 1, "poles": 2}),
     "six quotients in a sum": RATIONAL_PS,
     "a product of coefficients": toy_form(lambda c, x, y: c[0] * c[1] * x + y, ["a", "b"]),
     "a square": toy_form(lambda c, x, y: c[0] ** 2 * x + y, ["a"]),

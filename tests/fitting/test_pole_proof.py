@@ -122,7 +122,7 @@ def test_a_form_without_divisions_needs_no_boxes():
     assert found.holds
 
 
-TWO_ROOT = problem("ps").form("two-root-ps", {"terms": 3, "degree": 0, "least_alpha": 0.15})
+TWO_ROOT = problem("ps").find_form("two-root-ps", {"terms": 3, "degree": 0, "least_alpha": 0.15})
 
 
 def test_a_floor_of_a_denominator_hides_no_pole():

@@ -28,7 +28,7 @@ FAMILIES = {name: owner for owner in problems().values() for name in owner.famil
 
 def form_of(family: str, shape: dict):
     owner = FAMILIES.get(family) or problem("q")
-    return owner.form(family, shape)
+    return owner.find_form(family, shape)
 
 
 @pytest.mark.parametrize("quantity", ["q", "g", "ps"])
@@ -36,7 +36,7 @@ def test_every_candidate_is_made_again_from_its_family_and_shape(quantity):
     owner = problem(quantity)
     for form in owner.candidates({"alpha": 0.15}):
         shape = json.loads(json.dumps(form.shape))
-        assert owner.form(form.name, shape) is form
+        assert owner.find_form(form.name, shape) is form
         assert {form.size} == {len(start) for start in form.starts}
         assert form.reference is owner.reference
 

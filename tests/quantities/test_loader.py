@@ -17,9 +17,9 @@ def exact(x):
 
 def declared(name):
     reference = sf.Reference(name, "S", "a square", "x²", (X,), sf.Sampling(5, 5, 5), exact)
-    form = sf.plain_form(lambda x, a: a * x, reference, name="line")
-    call = sf.CallingConvention("Square", "S.", (sf.Argument("x", "x", "both"),))
-    return sf.Problem(reference, form, call)
+    problem = sf.Problem(name, [X], reference, shader="Square")
+    problem.form(lambda x, a: a * x, name="line")
+    return problem
 
 one, two = declared("one"), declared("two")
 again = one

@@ -35,7 +35,7 @@ LINE = Form(
 
 def twice() -> Problem:
     calling = CallingConvention("Twice", "2x ({equation}).", (Argument("x", "x"),))
-    return Problem(reference=TWICE, default=LINE, calling=calling)
+    return Problem(reference=TWICE, forms=(LINE,), calling=calling)
 
 
 @pytest.fixture
@@ -95,7 +95,7 @@ def test_the_listed_quantities_cannot_be_changed_from_outside():
 @pytest.mark.parametrize("name", problems())
 def test_the_default_form_is_found_by_its_name(name):
     owner = problem(name)
-    assert owner.form(owner.default.name, None) is owner.default
+    assert owner.find_form(owner.default.name, None) is owner.default
     assert next(iter(owner.single_forms)) == owner.default.name
 
 
@@ -111,24 +111,24 @@ def test_the_default_form_is_found_by_its_name(name):
 def test_an_unknown_form_is_refused_in_one_line(quantity, form, allowed):
     for shape in (None, {}, {"terms": 1}):
         with pytest.raises(ValueError) as caught:
-            problem(quantity).form(form, shape)
+            problem(quantity).find_form(form, shape)
         assert one_line(caught) == f"form {form!r} is not known: allowed are {allowed}"
 
 
 def test_a_single_form_has_no_shape_and_a_family_needs_one():
     with pytest.raises(ValueError, match="form 'rational-g' is not known"):
-        problem("g").form("rational-g", {"poles": 1})
+        problem("g").find_form("rational-g", {"poles": 1})
     with pytest.raises(ValueError, match=r"shape of 'tied-g' has \[\]: allowed are"):
-        problem("g").form("tied-g", None)
+        problem("g").find_form("tied-g", None)
 
 
 def test_further_forms_are_found_beside_the_default_one():
     steep = replace(LINE, name="steep")
-    own = replace(twice(), forms=(steep,))
-    assert own.form("steep", None) is steep
+    own = replace(twice(), forms=(LINE, steep))
+    assert own.find_form("steep", None) is steep
     assert list(own.single_forms) == ["line", "steep"]
     with pytest.raises(ValueError, match=r"allowed are line, steep$"):
-        own.form("curve", None)
+        own.find_form("curve", None)
 
 
 # What each problem declares

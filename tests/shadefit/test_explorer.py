@@ -178,7 +178,7 @@ def tables_only():
     axes = (replace(X, upper=0.75),)
     form = Form("line", "1 + c x", reference, axes, ["c"], (Stage(lambda c, x: 1 + c[0] * x),))
     calling = CallingConvention("New", "A line.", (Argument("x", "x", "above"),))
-    yield register(Problem(reference, form, calling))
+    yield register(Problem(reference, (form,), calling))
     unregister("new")
 
 

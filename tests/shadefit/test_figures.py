@@ -53,7 +53,7 @@ def new_problem(*axes, name="new", plot=None):
     stage = Stage(lambda c, *point: 1 + c[0] * sum(point))
     form = Form("line", "1 + c x", reference, axes, ["c"], (stage,))
     arguments = tuple(Argument(axis.name, axis.name) for axis in axes)
-    return Problem(reference, form, CallingConvention("New", "A line.", arguments), plot=plot)
+    return Problem(reference, (form,), CallingConvention("New", "A line.", arguments), plot=plot)
 
 
 @pytest.fixture

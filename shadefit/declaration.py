@@ -1,0 +1,217 @@
+"""`Problem` as a user declares it: axes, exact values, forms, published constants, shader names."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from fitting.form import Form, plain_form
+from fitting.goal import Norm, Rounding, Side
+from fitting.linearity import program_of
+from integrals.data import Data
+from integrals.reference import Axis, Reference, restricted
+from integrals.sampling import Measure, Sampling
+from integrals.sources import EVERYTHING, Source, make_reference
+from integrals.user_functions import check_function
+from programs.functions import Parameter, function
+from programs.printing.formula import formula
+from programs.tracing.tracer import trace
+from quantities.calling_convention import Argument, CallingConvention
+from quantities.problem import ExactCode, PlotHints, Published
+from quantities.problem import Problem as Quantity
+from shadefit.result import Result, fit_result
+
+# A form without a docstring gets its formula as the equation, if that is not longer than this.
+_LONGEST = 300
+
+
+class Problem(Quantity):
+    """A quantity of one's own: exact values over axes, and the forms that approximate it.
+
+        p = Problem("tanhc", [Axis("x", 0, 4)], closed_form(jnp.tanh))
+
+        @p.form(start=[1, 0.1, 0.4])
+        def pade(x, a, b, c):
+            return x * (a + b * x * x) / (1 + c * x * x)
+
+        p.fit("pade", norm="linf")
+
+    * `name`: letters, digits and dashes. `axes`: the arguments, with their domains.
+    * `reference`: the exact values: a source or a sum of sources (`closed_form`, `quadrature`,
+      `hemisphere`, `sphere`, `monte_carlo`), data (`table`, `samples`), or a `Reference`.
+    * `symbol`, `definition`, `meaning`: texts for headers and pictures.
+    * `codomain`: the interval of all exact values, which a `bounded` fit must keep to.
+    * `weight`: a function of the axes. Errors are multiplied by it.
+    * `published`: constants in print, to compare with.
+    * `shader`: the name of the exported function; by default the name in capitals. `arguments`
+      maps names of axes to those of the function's arguments. All are clamped to their domains.
+    * `sampling`, `calling`, `plot`: for those who want to choose everything.
+
+    The first form that is added is the one that `shadefit refit NAME` fits.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        axes: Sequence[Axis],
+        reference: Source | Data | Sequence[Source] | Reference,
+        *,
+        symbol: str = "",
+        definition: str = "",
+        meaning: str = "",
+        codomain: tuple[float, float] = EVERYTHING,
+        weight: Callable[..., Any] | None = None,
+        published: Sequence[Published] = (),
+        shader: str = "",
+        arguments: Mapping[str, str] | None = None,
+        sampling: Sampling | None = None,
+        calling: CallingConvention | None = None,
+        plot: PlotHints | None = None,
+    ):
+        """Raise ValueError for a source that does not fit the axes, and for names of no axis."""
+        closed = reference.function if isinstance(reference, Source) else None
+        if not isinstance(reference, Reference):
+            reference = make_reference(
+                reference,
+                name=name,
+                axes=axes,
+                symbol=symbol,
+                meaning=meaning,
+                definition=definition,
+                sampling=sampling,
+                codomain=codomain,
+            )
+        if weight is not None:
+            reference = _weighted(reference, weight)
+        if calling is None:
+            calling = _calling(name, axes, reference.symbol, shader, arguments or {})
+        exact = _exact_code(calling, closed, reference.axes)
+        super().__init__(
+            reference,
+            [],
+            calling,
+            published=tuple(published),
+            closed_form=None if exact is None else closed,
+            exact_code=exact,
+            plot=plot,
+        )
+
+    def form(
+        self,
+        function: Callable[..., Any] | None = None,
+        *,
+        start: Sequence[float] = (),
+        name: str | None = None,
+        domain: Mapping[str, tuple[float, float]] | None = None,
+    ) -> Callable[..., Any]:
+        """Add a plain function as a form; also a decorator. Returns the function.
+
+        Arguments named like axes are axes, the rest are coefficients. The first line of the
+        docstring is the equation. `start` has a value for each coefficient; a quotient of linear
+        functions of its coefficients needs none. `name` is by default the function's. `domain`
+        restricts axes, by name. Raises ValueError for a function that cannot be traced.
+        """
+        if function is None:
+            return lambda each: self.form(each, start=start, name=name, domain=domain)
+        axes = restricted(self.axes, **domain) if domain else None
+        self.add(plain_form(function, self.reference, start, name, axes))
+        return function
+
+    def add(self, form: Form) -> Form:
+        """Add a form and return it. Raises ValueError if another one has its name."""
+        if form.name in self.single_forms:
+            raise ValueError(f"{self.name} has a form {form.name!r}: allowed is another name")
+        with jax.enable_x64(True):
+            program = program_of(form)  # Raises ValueError if the form cannot be exported.
+        if form.equation == form.name:
+            names = [*map(str, form.coefficient_names), *(axis.symbol for axis in form.axes)]
+            text = formula(program, names)
+            form = replace(form, equation=text if len(text) <= _LONGEST else form.name)
+        self.forms = [*self.forms, form]
+        return form
+
+    def fit(
+        self,
+        form: str | None = None,
+        *,
+        norm: Norm = "l2",
+        relative: bool = False,
+        side: Side = "both",
+        rounding: Rounding = "none",
+        bounded: bool = False,
+    ) -> Result:
+        """Fit a form, by default the first one, and return the result, which shows itself.
+
+        * `norm`: 'l2' minimises the sum of squared errors, 'linf' the largest error.
+        * `relative`: errors are divided by the exact value.
+        * `side`: 'below' or 'above' allows errors on one side only; with 'linf'.
+        * `rounding`: 'float32' or 'float16' rounds the coefficients.
+        * `bounded`: all values are in the codomain, and proven to be; with 'linf'.
+
+        Raises ValueError for a form that is not known, and for a fit that is refused, such as one
+        with a pole.
+        """
+        goal = {
+            "norm": norm,
+            "relative": relative,
+            "side": side,
+            "rounding": rounding,
+            "bounded": bounded,
+        }
+        return fit_result(self, self.default if form is None else self.find_form(form), goal)
+
+
+def _weighted(reference: Reference, weight: Callable[..., Any]) -> Reference:
+    """Return a reference whose errors are multiplied by a function of the axes in all fits."""
+    check_function(weight, [], [], reference.axes)
+
+    def weights(points: np.ndarray) -> np.ndarray:
+        with jax.enable_x64(True):
+            return np.asarray(jax.vmap(weight)(*points.T))
+
+    measure = Measure(lambda points: weights(points) ** 2, weights)
+    return replace(reference, sampling=replace(reference.sampling, measures={"weight": measure}))
+
+
+def _calling(
+    name: str, axes: Sequence[Axis], symbol: str, shader: str, names: Mapping[str, str]
+) -> CallingConvention:
+    """Return the convention that clamps all arguments, in the order of the axes."""
+    known = [axis.name for axis in axes]
+    for each in names:
+        if each not in known:
+            raise ValueError(f"arguments: {each!r} is no axis: allowed are {', '.join(known)}")
+    default = "".join(part[:1].upper() + part[1:] for part in name.replace("_", "-").split("-"))
+    return CallingConvention(
+        shader or default,
+        f"{symbol} ({{equation}}); clamps to the domain.",
+        tuple(Argument(axis.name, names.get(axis.name, axis.name), "both") for axis in axes),
+    )
+
+
+def _exact_code(
+    calling: CallingConvention, closed: Callable[..., Any] | None, axes: Sequence[Axis]
+) -> ExactCode | None:
+    """Return the closed form as code; None if there is none, or if no shader could evaluate it."""
+    if closed is None:
+        return None
+
+    def value(*given):
+        return jnp.asarray(closed(*map(_clamped, given, axes)))
+
+    names = {each.axis: each.name for each in calling.arguments}
+    parameters = [Parameter(names[axis.name], (axis.lower, axis.upper), axis.unit) for axis in axes]
+    made = function(f"{calling.name}Exact", parameters, value, "The closed form.")
+    try:
+        with jax.enable_x64(True):
+            trace(made)
+    except ValueError:
+        return None
+    return ExactCode("closed form", tuple(axes), lambda _: (made,), lambda points: (points,))
+
+
+def _clamped(value: Any, axis: Axis) -> Any:
+    return jnp.maximum(jnp.minimum(value, axis.upper), axis.lower)
