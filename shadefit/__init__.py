@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from fitting import Stage as Stage
     from fitting import plain_form as plain_form
     from fitting.fit import fit as fit
+    from fitting.shapes.monomial_sums import powers as powers
     from integrals import PS as PS
     from integrals import VELVET as VELVET
     from integrals import Axis as Axis
@@ -76,6 +77,7 @@ _HOMES = {
     "coefficients.table": ("Table",),
     "fitting": ("Fit", "FittedForm", "Form", "Goal", "Stage", "plain_form"),
     "fitting.fit": ("fit",),
+    "fitting.shapes.monomial_sums": ("powers",),
     "integrals": (
         *("PS", "G", "Q", "R", "VELVET"),
         *("Axis", "Estimate", "Reference", "Sampling"),

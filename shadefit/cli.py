@@ -16,7 +16,9 @@ from shadefit.commands.cost import cost
 from shadefit.commands.evaluate import SETTINGS, evaluate
 from shadefit.commands.export import export
 from shadefit.commands.figures import figures
+from shadefit.commands.fit import fit
 from shadefit.commands.list import list_tables
+from shadefit.commands.new import new
 from shadefit.commands.refit import refit
 from shadefit.commands.render import render
 from shadefit.commands.report import report
@@ -81,6 +83,12 @@ _add(
     "Examples: shadefit refit r g --out /tmp/tables --grid 33; "
     "shadefit refit best/q-9; shadefit refit g --norm linf --out /tmp/tables",
 )
+_add(
+    "fit",
+    fit,
+    "Example: shadefit fit data.csv --x NdotV,alpha --y E --sigma sigma --form rational:2,2",
+)
+_add("new", new, "Example: shadefit new fresnel --axes eta=1:3")
 _add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")
 _add("compare", compare, "Example: shadefit compare ps my/table.json --json")
 _add(

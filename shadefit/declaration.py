@@ -11,6 +11,11 @@ import numpy as np
 from fitting.form import Form, plain_form
 from fitting.goal import Norm, Rounding, Side
 from fitting.linearity import program_of
+from fitting.shapes.chebyshev_sums import chebyshev
+from fitting.shapes.exponential_sums import exponentials
+from fitting.shapes.piecewise import piecewise_linear
+from fitting.shapes.pole_sums import pole_sum
+from fitting.shapes.rationals import polynomial, rational
 from integrals.data import Data
 from integrals.reference import Axis, Reference, restricted
 from integrals.sampling import Measure, Sampling
@@ -119,6 +124,96 @@ class Problem(Quantity):
         axes = restricted(self.axes, **domain) if domain else None
         self.add(plain_form(function, self.reference, start, name, axes))
         return function
+
+    def rational(
+        self,
+        numerator: Sequence,
+        denominator: Sequence,
+        *,
+        name: str = "rational",
+        domain: Mapping[str, tuple[float, float]] | None = None,
+        of: Callable[..., Any] | None = None,
+        times: Callable[..., Any] | None = None,
+        plus: Callable[..., Any] | None = None,
+        one: int | tuple[int, ...] | None = None,
+    ) -> Form:
+        """Add plus + times · N/D, a quotient of sums of monomials, and return the form.
+
+        `numerator` and `denominator` are exponents, see `powers`; `of` has the variables, by
+        default the axes; `one` is the exponent in D whose coefficient is 1. See
+        `fitting.shapes.rationals.rational` for the rest.
+        """
+        structure = {"of": of, "times": times, "plus": plus, "one": one}
+        return self._shaped(rational, numerator, denominator, name=name, domain=domain, **structure)
+
+    def polynomial(
+        self,
+        exponents: int | Sequence,
+        *,
+        name: str = "polynomial",
+        domain: Mapping[str, tuple[float, float]] | None = None,
+        of: Callable[..., Any] | None = None,
+        times: Callable[..., Any] | None = None,
+        plus: Callable[..., Any] | None = None,
+    ) -> Form:
+        """Add plus + times · Σ cᵢ zⁱ and return it; `exponents` may be the total degree."""
+        structure = {"of": of, "times": times, "plus": plus}
+        return self._shaped(polynomial, exponents, name=name, domain=domain, **structure)
+
+    def chebyshev(
+        self,
+        degrees: int | Sequence[int],
+        *,
+        name: str = "chebyshev",
+        domain: Mapping[str, tuple[float, float]] | None = None,
+    ) -> Form:
+        """Add a sum of Chebyshev polynomials, of a degree for each axis, and return it."""
+        return self._shaped(chebyshev, degrees, name=name, domain=domain)
+
+    def exponentials(
+        self,
+        terms: int,
+        *,
+        name: str = "exponentials",
+        domain: Mapping[str, tuple[float, float]] | None = None,
+        constant: bool = False,
+    ) -> Form:
+        """Add Σ aₖ exp(−bₖ x), with a constant if wanted, and return it; for one axis."""
+        return self._shaped(exponentials, terms, name=name, domain=domain, constant=constant)
+
+    def pole_sum(
+        self,
+        poles: int,
+        degree: int,
+        *,
+        name: str = "poles",
+        domain: Mapping[str, tuple[float, float]] | None = None,
+        of: Callable[..., Any] | None = None,
+    ) -> Form:
+        """Add a polynomial of a degree plus Σ aₖ/(bₖ + x), and return it; for one variable."""
+        return self._shaped(pole_sum, poles, degree, name=name, domain=domain, of=of)
+
+    def piecewise_linear(
+        self,
+        knots: int | Sequence[float],
+        *,
+        name: str = "piecewise",
+        domain: Mapping[str, tuple[float, float]] | None = None,
+    ) -> Form:
+        """Add a line between values at knots, a number of them or a list; for one axis."""
+        return self._shaped(piecewise_linear, knots, name=name, domain=domain)
+
+    def _shaped(
+        self,
+        make: Callable[..., Form],
+        *given: Any,
+        name: str,
+        domain: Mapping[str, tuple[float, float]] | None,
+        **structure: Any,
+    ) -> Form:
+        axes = restricted(self.axes, **domain) if domain else None
+        with jax.enable_x64(True):
+            return self.add(make(self.reference, *given, name=name, axes=axes, **structure))
 
     def add(self, form: Form) -> Form:
         """Add a form and return it. Raises ValueError if another one has its name."""

@@ -163,11 +163,16 @@ class Result:
         return f"<table><caption>{title}</caption>{body}</table>"
 
 
-def fit_result(owner: Problem, form: Form, goal: dict[str, Any]) -> Result:
-    """Fit a form of a quantity to scattered points, in float64. Raises ValueError as `fit` does."""
+def fit_result(
+    owner: Problem, form: Form, goal: dict[str, Any], command: str | None = None
+) -> Result:
+    """Fit a form of a quantity to scattered points, in float64. Raises ValueError as `fit` does.
+
+    `goal` has fields of `Goal`. `command` is what made the fit; None: a call of `Problem.fit`.
+    """
     with jax.enable_x64(True):
         made = fit(form, Goal(**goal))
         other = {key: value for key, value in goal.items() if value != getattr(Goal(), key)}
         given = "".join(f", {key}={value!r}" for key, value in other.items())
-        command = f"{owner.name}.fit({form.name!r}{given})"
+        command = command or f"{owner.name}.fit({form.name!r}{given})"
         return Result(owner, made, table_of(made, command, owner=owner))

@@ -1,0 +1,210 @@
+"""`shadefit fit`: fit forms to measured data, without a problem file."""
+
+import re
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from shadefit.commands.options import Bounded, Json, Norm, Relative, Rounding, Side, goal_fields
+
+if TYPE_CHECKING:
+    from shadefit.declaration import Problem
+    from shadefit.result import Result
+
+# Of fewer rows, none is held out by default: all are needed for the fit.
+_FEW = 100
+_HOLD_OUT = 5
+
+
+def fit(
+    data: Annotated[Path, typer.Argument(help="File of columns: CSV with a header, NPY or NPZ.")],
+    x: Annotated[str, typer.Option("--x", help="Columns of the axes, separated by commas.")],
+    y: Annotated[str, typer.Option("--y", help="Column of the values.")],
+    form: Annotated[
+        list[str],
+        typer.Option(
+            help="Form to fit; may be given again. rational:M,N (degrees above and below; of "
+            "several axes the total degrees), polynomial:N, chebyshev:N or N,M for each axis; of "
+            "one axis exponentials:TERMS, poles:POLES,DEGREE, piecewise:KNOTS."
+        ),
+    ],
+    sigma: Annotated[
+        str | None, typer.Option(help="Column of the standard deviations of the values.")
+    ] = None,
+    hold_out: Annotated[
+        int | None,
+        typer.Option(
+            help="One row of this many is kept from the fits and judges them; 0: none. By default "
+            "5, or 0 for fewer than 100 rows."
+        ),
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Name of the quantity; by default the column of the values.")
+    ] = None,
+    shader: Annotated[str | None, typer.Option(help="Name of the exported function.")] = None,
+    norm: Norm = None,
+    side: Side = None,
+    rounding: Rounding = None,
+    relative: Relative = False,
+    bounded: Bounded = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for NAME.json, or NAME-FORM.json of several forms."),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Fit forms to the rows of a file, and print coefficients, errors and proofs.
+
+    The domain of each axis is the range of its column. Errors are those at
+    the rows that are held out, or if there are none, at all rows.
+    """
+    from coefficients.files import require_writable, write_whole
+    from coefficients.table import serialise
+    from integrals.data import table
+    from shadefit.result import fit_result
+    from shadefit.terminal import print_json, stages
+
+    columns = [part.strip() for part in x.split(",")]
+    found = table(data, columns, y, sigma)
+    if hold_out is None:
+        hold_out = 0 if len(found.values) < _FEW else _HOLD_OUT
+    found = table(data, columns, y, sigma, hold_out)
+    owner = _problem(found, columns, name or y, shader, data)
+    for each in form:
+        _add(owner, each)
+    goal = goal_fields(norm, side, rounding, relative, bounded)
+    if out is not None:
+        require_writable(out)
+    command = ["shadefit", "fit", str(data), "--x", x, "--y", y]
+    command += [] if sigma is None else ["--sigma", sigma]
+    command += ["--hold-out", str(hold_out)]
+    options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
+    results: list[Result] = []
+    with stages() as progress:
+        task = progress.add_task("")
+        for text, each in zip(form, owner.forms, strict=True):
+            progress.update(task, description=f"{owner.name}: {text}")
+            own = shlex.join([*command, "--form", text]) + options
+            results.append(fit_result(owner, each, goal, own))
+    several = len(results) > 1
+    files: list[Path | None] = [None] * len(results)
+    if out is not None:
+        stems = [f"{owner.name}-{each.fit.fitted.form.name}" for each in results]
+        files = [out / f"{stem if several else owner.name}.json" for stem in stems]
+        for each, file in zip(results, files, strict=True):
+            assert file is not None
+            write_whole(file, serialise(each.table))
+    if json:
+        records = [
+            {
+                "file": None if file is None else str(file),
+                **each.table.model_dump(by_alias=True, exclude_none=True),
+            }
+            for each, file in zip(results, files, strict=True)
+        ]
+        print_json({"tables": records})
+        return
+    for each, file in zip(results, files, strict=True):
+        print(each)
+        if file is not None:
+            print(file)
+    if several:
+        _print_together(results)
+
+
+def _problem(
+    found: Any, columns: list[str], name: str, shader: str | None, data: Path
+) -> "Problem":
+    """Return the quantity that the data are values of."""
+    from integrals.reference import Axis
+    from shadefit.declaration import Problem
+
+    axes = []
+    for k, column in enumerate(columns):
+        low, high = found.points[:, k].min(), found.points[:, k].max()
+        if not low < high:
+            raise ValueError(f"{data}: column {column!r} has one value only: allowed are several")
+        axes.append(Axis(_identifier(column), low, high, meaning=f"column {column}"))
+    own = re.sub(r"[^a-z0-9._-]+", "-", name.lower()).strip("-._") or "data"
+    return Problem(
+        own,
+        axes,
+        found,
+        symbol=name,
+        definition=f"column {name} of {data.name}",
+        meaning="measured",
+        shader=shader or _identifier(name)[:1].upper() + _identifier(name)[1:],
+    )
+
+
+def _identifier(column: str) -> str:
+    """Return a column's name as the name of an axis, which has letters, digits and _ only."""
+    name = re.sub(r"\W+", "_", column, flags=re.ASCII).strip("_") or "x"
+    # A digit cannot come first, and c0, t0 and the like mean coefficients and steps.
+    return f"x_{name}" if name[0].isdigit() or re.fullmatch(r"[ct]\d+", name) else name
+
+
+def _add(owner: "Problem", text: str) -> None:
+    """Add the form that a text such as 'rational:2,2' describes."""
+    kind, _, numbers = text.partition(":")
+    if kind not in _SHAPES:
+        raise ValueError(f"--form {text}: allowed are {', '.join(_SHAPES)}, as in rational:2,2")
+    try:
+        counts = [int(part) for part in numbers.split(",")]
+    except ValueError:
+        raise ValueError(f"--form {text}: {numbers!r} are no whole numbers") from None
+    least, most = _COUNTS[kind] if kind in _COUNTS else (1, len(owner.axes))
+    if not least <= len(counts) <= most or min(counts) < 0:
+        allowed = str(least) if least == most else f"{least} to {most}"
+        raise ValueError(f"--form {text}: allowed are {allowed} numbers after {kind}:")
+    _SHAPES[kind](owner, counts, text.replace(":", "-").replace(",", "-"))
+
+
+def _rational(owner: "Problem", counts: list[int], name: str) -> None:
+    from fitting.shapes.monomial_sums import powers
+
+    above, below = (powers(count, len(owner.axes), total=True) for count in counts)
+    owner.rational(above, below, name=name)
+
+
+_SHAPES: "dict[str, Callable[[Problem, list[int], str], Any]]" = {
+    "rational": _rational,
+    "polynomial": lambda owner, counts, name: owner.polynomial(counts[0], name=name),
+    "chebyshev": lambda owner, counts, name: owner.chebyshev(
+        counts * len(owner.axes) if len(counts) == 1 else counts, name=name
+    ),
+    "exponentials": lambda owner, counts, name: owner.exponentials(counts[0], name=name),
+    "poles": lambda owner, counts, name: owner.pole_sum(*counts, name=name),
+    "piecewise": lambda owner, counts, name: owner.piecewise_linear(counts[0], name=name),
+}
+# How many numbers a shape takes; those that are not here take one, or one for each axis.
+_COUNTS = {
+    "rational": (2, 2),
+    "polynomial": (1, 1),
+    "exponentials": (1, 1),
+    "poles": (2, 2),
+    "piecewise": (1, 1),
+}
+
+
+def _print_together(results: "list[Result]") -> None:
+    from shadefit.terminal import print_table
+
+    print_table(
+        "All forms",
+        ["form", "coefficients", "operations", "rms", "largest"],
+        [
+            [
+                each.fit.fitted.form.name,
+                str(each.table.size),
+                str(each.operations),
+                f"{each.errors.rms:.3e}",
+                f"{each.errors.largest:.3e}",
+            ]
+            for each in results
+        ],
+        f"Errors against {results[0].problem.reference.compared_with}.",
+    )
