@@ -1,0 +1,54 @@
+"""Sums of exponentials: values, starts, a fit that finds known coefficients, what is refused."""
+
+from dataclasses import replace
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from fitting.fit import fit
+from fitting.shapes import exponentials
+from integrals import Axis, Estimate
+from tests.fitting.lines import LINE
+from tests.fitting.toys import TOY
+
+
+def test_a_sum_of_exponentials_has_its_value_names_and_text():
+    form = exponentials(LINE, 2, name="e", constant=True)
+    assert form.coefficient_names == ["c0", "a1", "b1", "a2", "b2"]
+    assert form.equation == "c0 + a1 exp(−b1 η) + a2 exp(−b2 η)"
+    c = np.array([0.25, 2.0, 0.5, -3.0, 4.0])
+    expected = 0.25 + 2 * np.exp(-0.5 * 1.7) - 3 * np.exp(-4 * 1.7)
+    assert float(form(c, 1.7)) == pytest.approx(expected, rel=1e-14)
+
+
+def test_a_fit_finds_the_exponentials_that_made_the_data():
+    made = replace(
+        LINE,
+        axes=(Axis("x", 0.0, 2.0),),
+        closed_form=lambda x: Estimate(
+            0.1 + 2 * jnp.exp(-x) + 0.5 * jnp.exp(-6 * x), jnp.full((), 1e-15)
+        ),
+    )
+    found = fit(exponentials(made, 2, name="e", constant=True))
+    c0, *pairs = np.asarray(found.fitted.coefficients)
+    slow, fast = sorted(np.reshape(pairs, (2, 2)), key=lambda pair: pair[1])
+    np.testing.assert_allclose([c0, *slow, *fast], [0.1, 2, 1, 0.5, 6], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(0.0, 2.0), (1000.0, 1001.0), (0.0, np.inf)])
+def test_starts_do_not_overflow_and_fit_the_width(lower, upper):
+    reference = replace(LINE, axes=(Axis("x", lower, upper),))
+    for terms in (1, 4):
+        form = exponentials(reference, terms, name="e")
+        for start in form.starts:
+            assert np.isfinite(start).all()
+            assert (start[1::2] > 0).all()
+            assert float(form(start, lower)) == pytest.approx(1) or lower > 100
+
+
+def test_several_axes_and_no_terms_are_refused():
+    with pytest.raises(ValueError, match="e has the axes x, y: allowed is one axis"):
+        exponentials(TOY, 2, name="e")
+    with pytest.raises(ValueError, match="e: terms = 0: at least 1 is needed"):
+        exponentials(LINE, 0, name="e")

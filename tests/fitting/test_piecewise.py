@@ -1,0 +1,73 @@
+"""Piecewise linear forms: values as NumPy interpolates, proofs, knots, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fitting.fit import fit
+from fitting.form import traced
+from fitting.linearity import linear_parts
+from fitting.shapes import piecewise_linear
+from integrals import Axis
+from programs import evaluate
+from tests.fitting.lines import AXIS, LINE, operations
+from tests.fitting.toys import TOY
+
+
+@pytest.mark.parametrize("knots", [2, 9, [1.0, 1.1, 3.0], [1.5, 2.0], [1.0, 1.25, 1.5]])
+def test_values_are_interpolated_and_constant_outside_the_knots(knots):
+    form = piecewise_linear(LINE, knots, name="p")
+    places = np.linspace(1, 3, knots) if isinstance(knots, int) else np.array(knots)
+    c = np.random.default_rng(1).normal(size=len(places))
+    fitted, eta = form.fitted(c), np.sort(np.append(np.linspace(1, 3, 57), places))
+    found = evaluate(traced(fitted, fitted, form.axes), eta[:, None])[:, 0]
+    np.testing.assert_allclose(found, np.interp(eta, places, c), atol=1e-14)
+
+
+def test_knots_follow_the_scale_of_the_axis():
+    reference = replace(LINE, axes=(replace(AXIS, lower=0.01, upper=1.0, scale="logarithmic"),))
+    form = piecewise_linear(reference, 3, name="p")
+    assert form.equation == "linear in η between the points (0.01, c0), (0.1, c1), (1, c2)"
+
+
+def test_it_is_linear_has_no_pole_and_its_range_is_proven():
+    form = piecewise_linear(LINE, 5, name="p")
+    parts = linear_parts(form, np.linspace(1, 3, 7)[:, None])
+    assert parts is not None
+    assert parts.is_linear
+    found = fit(form)
+    c = np.asarray(found.fitted.coefficients)
+    assert found.certificate.bound == np.inf
+    assert found.range is not None
+    assert (found.range.lower, found.range.upper) == pytest.approx((c.min(), c.max()), rel=1e-3)
+
+
+def test_a_piece_needs_six_operations_and_less_at_the_ends():
+    c = np.random.default_rng(2).normal(size=6)
+    # A piece: difference, scale, two limits, size, sum. The first and the last have one limit less.
+    assert operations(piecewise_linear(LINE, 6, name="p"), c) == 5 * 6 - 2
+
+
+@pytest.mark.parametrize(
+    ("knots", "message"),
+    [
+        (1, "p: 1 knots: at least 2 are needed"),
+        ([2.0], "p: 1 knots: at least 2"),
+        ([2.0, 1.0], r"p: knots \[2.0, 1.0\]: allowed are increasing"),
+        ([1.0, np.nan], "allowed are increasing finite"),
+        ([1.0, 4.0], r"p: knot 4: allowed are \[1, 3\] of eta"),
+    ],
+)
+def test_bad_knots_are_refused(knots, message):
+    with pytest.raises(ValueError, match=message):
+        piecewise_linear(LINE, knots, name="p")
+
+
+def test_several_axes_and_endless_ones_are_refused():
+    with pytest.raises(ValueError, match="allowed is one axis"):
+        piecewise_linear(TOY, 3, name="p")
+    endless = replace(LINE, axes=(Axis("x", 0.0, np.inf),))
+    with pytest.raises(ValueError, match="allowed is a finite domain"):
+        piecewise_linear(endless, 3, name="p")
+    assert piecewise_linear(endless, [0.0, 1.0, 4.0], name="p").size == 3
