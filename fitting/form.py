@@ -1,7 +1,7 @@
 """Forms: compact functions with coefficients that approximate a quantity."""
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from jax import Array
 
 from integrals.reference import Axis, Reference
+from integrals.user_functions import label
 from programs.functions import Function, Parameter
 from programs.program import Program
 from programs.tracing.tracer import trace
@@ -125,6 +126,7 @@ def plain_form(
     start: Sequence[float] = (),
     name: str | None = None,
     axes: tuple[Axis, ...] | None = None,
+    sizes: Mapping[str, int] | None = None,
 ) -> Form:
     """Make a form of a plain function of scalars.
 
@@ -133,26 +135,57 @@ def plain_form(
 
     Arguments: `start`, coefficients that a fit may start from, which a quotient of linear functions
     of its coefficients does not need; `name`, by default the function's; `axes`, the axes of the
-    reference restricted to the form's domain, by default not restricted. Raises ValueError for a
-    function that does not take every axis, and for a start of the wrong length.
+    reference restricted to the form's domain, by default not restricted; `sizes`, the lengths of
+    the arguments that are arrays of coefficients, by name. Raises ValueError for a function that
+    does not take every axis, for arguments without a name (`*c`), and for a start of the wrong
+    length.
     """
     axes = reference.axes if axes is None else axes
+    sizes = sizes or {}
     of_axes = [axis.name for axis in axes]
-    arguments = list(inspect.signature(function).parameters)
-    coefficients = [each for each in arguments if each not in of_axes]
-    own = name or getattr(function, "__name__", "form").replace("_", "-")
-    for missing in (each for each in of_axes if each not in arguments):
-        raise ValueError(f"{own} does not take {missing!r}: allowed is a function of all axes")
-    if len(start) not in (0, len(coefficients)):
-        raise ValueError(f"{own}: {len(start)} starts given for {len(coefficients)} coefficients")
+    coefficients = _coefficients_of(function, of_axes, sizes)
+    own = name or getattr(function, "__name__", "form").strip("<>").replace("_", "-")
+    names = [
+        text
+        for each in coefficients
+        for text in ([f"{each}{k}" for k in range(sizes[each])] if each in sizes else [each])
+    ]
+    if len(start) not in (0, len(names)):
+        raise ValueError(
+            f"{label(function)}: {len(start)} starts given for {len(names)} coefficients"
+        )
 
     def value(c, *point):
-        given = dict(zip(of_axes, point, strict=True))
-        return function(**given, **{key: c[k] for k, key in enumerate(coefficients)})
+        given, first = dict(zip(of_axes, point, strict=True)), 0
+        for each in coefficients:
+            size = sizes.get(each)
+            given[each] = c[first] if size is None else c[first : first + size]
+            first += size or 1
+        return jnp.asarray(function(**given))
 
     summary = (inspect.getdoc(function) or own).splitlines()[0]
     starts = (np.array(start, float),) if len(start) else ()
-    return Form(own, summary, reference, axes, coefficients, (Stage(value),), starts=starts)
+    return Form(own, summary, reference, axes, names, (Stage(value),), starts=starts)
+
+
+def _coefficients_of(
+    function: Callable[..., Any], axes: Sequence[str], sizes: Mapping[str, int]
+) -> list[str]:
+    """Return the arguments of a function that are coefficients."""
+    parameters = inspect.signature(function).parameters
+    allowed = f"allowed are the axes {', '.join(axes)}, and then coefficients"
+    for each in parameters.values():
+        if each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD, each.POSITIONAL_ONLY):
+            raise ValueError(f"{label(function)}: {each} has no name to call it by: {allowed}")
+    if list(parameters)[:1] and next(iter(parameters)) not in axes:
+        raise ValueError(f"{label(function)} begins with {next(iter(parameters))}: {allowed}")
+    for missing in (each for each in axes if each not in parameters):
+        raise ValueError(f"{label(function)} does not take {missing}: {allowed}")
+    found = [each for each in parameters if each not in axes]
+    for each, size in sizes.items():
+        if each not in found or size < 1:
+            raise ValueError(f"{label(function)}: sizes of {each} = {size}: {allowed}")
+    return found
 
 
 class FittedForm(eqx.Module):

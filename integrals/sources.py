@@ -308,13 +308,19 @@ def _require_inside(data: Data, axes: Sequence[Axis]) -> None:
 
 
 def _sampling(axes: int, at_once: int) -> Sampling:
-    """Return the default numbers of points, those of built-in quantities of the same kind.
+    """Return the default numbers of points for a number of axes.
 
-    They grow with the number of axes: as for Q with one, G with two, and P_s with more. They are
-    those of R if a point needs over 1000 values of an integrand at once: it takes milliseconds.
+    `at_once` is the number of values of an integrand that a point needs; 1 for a closed form. A
+    closed form has as many points as a built-in quantity with as many axes. An integral has about
+    as many for the search for large errors, instead of hill climbing: values near those that were
+    computed already would be computed again and again. If a point needs over 1000 values, it takes
+    milliseconds, and the numbers are those of R.
     """
     if at_once > 1000:
         return Sampling(fitted=11, checked=10, judged=12, climbs=False, verified=1 << 12)
+    if at_once > 1:
+        most = 14 if axes == 1 else 15
+        return Sampling(fitted=12, checked=most, judged=14, climbs=False, verified=1 << 14)
     if axes == 1:
         return Sampling(fitted=11, checked=13, judged=16)
     return Sampling(fitted=13, checked=15, judged=16 if axes == 2 else 17)

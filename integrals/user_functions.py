@@ -1,6 +1,7 @@
 """Checks of functions that a user gives, with errors that name the function and its line."""
 
 import inspect
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -12,8 +13,10 @@ import numpy as np
 from integrals.reference import Axis
 from integrals.rules.ranges import Range
 
-# A function is tried at this many points before it is used.
-PROBES = 16
+# A function is tried at this many points before it is used, the corners of the domain among them.
+PROBES = 64
+# An end that does not belong to the domain is replaced by this fraction of it.
+_LEAST = 1e-3
 
 
 def label(function: Callable) -> str:
@@ -117,8 +120,13 @@ def describe(names: Sequence[str], values: Sequence[Any]) -> str:
 
 
 def probe_axes(axes: Sequence[Axis]) -> list[np.ndarray]:
-    """Return values inside the domain of each axis, (PROBES,) each. The same every time."""
+    """Return values in the domain of each axis, (PROBES,) each. The same every time.
+
+    The first ones are the corners of the domain, without ends that do not belong to it.
+    """
     fractions = probe_cube(len(axes), seed=1)
+    corners = list(itertools.islice(itertools.product((0.0, 1.0), repeat=len(axes)), PROBES // 2))
+    fractions[:, : len(corners)] = np.transpose(corners)
     return [_inside(axis, fraction) for axis, fraction in zip(axes, fractions, strict=True)]
 
 
@@ -128,7 +136,10 @@ def probe_cube(variables: int, seed: int = 0) -> np.ndarray:
 
 
 def _inside(axis: Axis, fraction: np.ndarray) -> np.ndarray:
+    if axis.open_below:
+        fraction = np.maximum(fraction, _LEAST)
     if math.isinf(axis.upper):
+        fraction = np.minimum(fraction, 1 - _LEAST)
         return axis.lower + fraction / (1 - fraction)
     return axis.place(fraction)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import jax
@@ -111,18 +112,20 @@ class Problem(Quantity):
         start: Sequence[float] = (),
         name: str | None = None,
         domain: Mapping[str, tuple[float, float]] | None = None,
+        sizes: Mapping[str, int] | None = None,
     ) -> Callable[..., Any]:
         """Add a plain function as a form; also a decorator. Returns the function.
 
         Arguments named like axes are axes, the rest are coefficients. The first line of the
         docstring is the equation. `start` has a value for each coefficient; a quotient of linear
         functions of its coefficients needs none. `name` is by default the function's. `domain`
-        restricts axes, by name. Raises ValueError for a function that cannot be traced.
+        restricts axes, by name. `sizes` has the lengths of arguments that are arrays of
+        coefficients. Raises ValueError for a function that cannot be traced.
         """
         if function is None:
-            return lambda each: self.form(each, start=start, name=name, domain=domain)
+            return partial(self.form, start=start, name=name, domain=domain, sizes=sizes)
         axes = restricted(self.axes, **domain) if domain else None
-        self.add(plain_form(function, self.reference, start, name, axes))
+        self.add(plain_form(function, self.reference, start, name, axes, sizes))
         return function
 
     def rational(

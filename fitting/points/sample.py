@@ -65,8 +65,14 @@ def sample_at(points: np.ndarray, form: Form, goal: Goal, measure: str) -> Sampl
 
 
 def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, measure: str) -> Sample:
-    exact, error = np.asarray(estimates.value), float(np.max(estimates.error))
-    return Sample(points, exact, error, scale_at(points, exact, form, goal, measure))
+    exact, error = np.asarray(estimates.value), np.asarray(estimates.error)
+    scale = scale_at(points, exact, form, goal, measure)
+    if form.reference.best_leg == "monte_carlo":
+        # Values with a large standard error weigh less, as in a fit to data. Without the median, a
+        # value whose error happens to be 0 would weigh more than all others.
+        usual = np.median(error)
+        scale = scale * (usual / np.hypot(usual, error) if usual > 0 else 1.0)
+    return Sample(points, exact, float(np.max(error)), scale)
 
 
 def scale_at(

@@ -81,7 +81,7 @@ def new(
 
 
 def problem_file(name: str, axes: list[str], file: str) -> str:
-    """Return the text of a problem file. Raises ValueError for an axis that is not NAME=LOW:HIGH."""
+    """Return a problem file's text. Raises ValueError for an axis that is not NAME=LOW:HIGH."""
     found = [_axis(text) for text in axes]
     names = [axis for axis, _, _ in found]
     for each in names:

@@ -55,7 +55,9 @@ def test_a_packaged_table_can_be_evaluated_without_this_project(name):
     fitted = entry.require_fitted()
     data = json.loads(serialise(entry.require_table()))
     for fraction in (0.11, 0.47, 0.83):
-        point = {axis.name: axis.lower + fraction * (axis.upper - axis.lower) for axis in entry.axes}
+        point = {
+            axis.name: axis.lower + fraction * (axis.upper - axis.lower) for axis in entry.axes
+        }
         expected = float(fitted(*point.values()))
         assert value_of(data, point) == pytest.approx(expected, rel=1e-12, abs=1e-14)
 

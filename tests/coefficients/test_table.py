@@ -98,7 +98,8 @@ def test_keys_are_written_in_a_fixed_order_whatever_order_they_are_read_in():
     data = json.loads(TEXT)
     assert list(data) == [
         "schema", "name", "quantity", "form", "equation", "arguments", "coefficients",
-        "coefficient_names", "expression", "grid", "weight", "reference", "errors", "certificates", "provenance",
+        "coefficient_names", "expression", "grid", "weight", "reference", "errors", "certificates",
+        "provenance",
     ]  # fmt: skip
     turned = json.dumps(backwards(data))
     assert turned != json.dumps(data)
