@@ -1,7 +1,7 @@
 """`shadefit bake`: write a quantity or a table as a lookup texture, and compare it with fits."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -13,9 +13,8 @@ from shadefit.completion import complete_shader
 if TYPE_CHECKING:
     import numpy as np
 
-    from coefficients.catalogue import Entry
     from coefficients.lut import Lut
-    from fitting import Domain, Errors, FittedForm
+    from fitting import Errors, FittedForm
     from integrals.reference import Axis
     from quantities import Problem
 
@@ -73,6 +72,7 @@ def bake(
     from coefficients.files import require_writable_file, write_whole_bytes
     from coefficients.lut import bake as bake_lut
     from coefficients.lut import errors_of, require_format, write_lut
+    from coefficients.lut.beside import coefficient_bytes, difference_from, tables_beside
     from coefficients.lut.files import EXTENSIONS
     from fitting import Domain, judge
     from shadefit.terminal import stages
@@ -91,18 +91,24 @@ def bake(
         where = Domain(made.owner.reference, axes)
         errors = errors_of(lut, where.reference)
         own = None if made.fitted is None else judge(made.fitted, where)
-        others = _tables(made.owner, where)
+        others = tables_beside(made.owner, where)
     write_whole_bytes(path, data)
     report = _report(source, path, format, lut, errors)
     if own is not None and made.fitted is not None:
         report["table"] = {
             "rms": own.rms,
             "max": own.largest,
-            "bytes": 4 * made.fitted.form.size,
+            "bytes": coefficient_bytes(made.fitted),
             "operations": made.operations,
-            "largest_difference": _apart(lut, made.fitted, where),
+            "largest_difference": difference_from(lut, made.fitted, where),
         }
-    report["tables"] = others
+    report["tables"] = [
+        {
+            **{key: value for key, value in asdict(each).items() if key != "largest"},
+            "max": each.largest,
+        }
+        for each in others
+    ]
     _show(report, json)
 
 
@@ -189,72 +195,6 @@ def _range(text: str) -> tuple[str, tuple[float, float], str | None]:
     except typer.BadParameter:
         raise ValueError(f"range {text!r}: allowed are two numbers or angles") from None
     return name.replace("-", "_"), (low, high), parts[2] if len(parts) == 3 else None
-
-
-def _tables(owner: "Problem", domain: "Domain") -> list[dict[str, Any]]:
-    """Return the operations and errors of a quantity's tables, in order of operations.
-
-    The errors are those in the part of the table's domain that the LUT's domain shares.
-    """
-    from coefficients.catalogue import entries
-    from coefficients.exported_code import operations_of
-
-    rows = []
-    for entry in entries(owner):
-        if entry.kind == "printed":
-            continue
-        errors, axes = _errors_in(entry, domain)
-        if errors is None:
-            continue
-        rows.append(
-            {
-                "table": entry.name,
-                "kind": entry.kind,
-                "bytes": 4 * entry.require_fitted().form.size,
-                "operations": operations_of(entry),
-                "rms": errors[0],
-                "max": errors[1],
-                "domain": {
-                    axis.name: [axis.lower, axis.upper]
-                    for axis, own in zip(axes, domain.axes, strict=True)
-                    if (axis.lower, axis.upper) != (own.lower, own.upper)
-                },
-            }
-        )
-    return sorted(rows, key=lambda row: (row["operations"], row["max"]))
-
-
-def _errors_in(
-    entry: "Entry", domain: "Domain"
-) -> "tuple[tuple[float, float] | None, tuple[Axis, ...]]":
-    """Return the rms and the largest error of a table, and the axes on which they are measured."""
-    from fitting import common_domain, judge
-
-    fitted = entry.require_fitted()
-    try:
-        common = common_domain([fitted.form, domain])
-    except ValueError:
-        return None, domain.axes
-    stated = entry.require_table().errors
-    same = all(
-        (a.lower, a.upper) == (b.lower, b.upper)
-        for a, b in zip(common.axes, fitted.axes, strict=True)
-    )
-    if stated is not None and same:
-        return (stated.off_grid.rms, stated.off_grid.max), common.axes
-    errors = judge(fitted, common)
-    return (errors.rms, errors.largest), common.axes
-
-
-def _apart(lut: "Lut", fitted: "FittedForm", domain: "Domain") -> float:
-    """Return the largest difference of a LUT from the table that it was made of."""
-    import numpy as np
-
-    from fitting import form_values
-    from fitting.points.scattered import judging_points
-
-    points, _ = judging_points(domain)
-    return float(np.max(np.abs(lut(points) - form_values(fitted, points))))
 
 
 def _report(source: str, path: Path, kind: str, lut: "Lut", errors: "Errors") -> dict[str, Any]:
