@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from coefficients.lut.texture import (
 )
 from fitting.errors import Errors, judge_values
 from fitting.points.domain import Domain
-from integrals.reference import Axis, Reference, Scale
+from integrals.reference import Axis, Reference
 
 MOST_AXES = 3
 # Values at more texels would not fit into memory at once.
@@ -71,12 +72,12 @@ def errors_of(lut: Lut, reference: Reference, axes: tuple[Axis, ...] | None = No
     return judge_values(lut, Domain(reference, lut.axes if axes is None else axes))
 
 
-def with_scales(axes: Sequence[Axis]) -> dict[str, Scale]:
-    """Return the scale that a LUT uses for each axis: its own, if its domain allows it."""
-    return {
-        axis.name: "linear" if axis.scale == "logarithmic" and axis.lower <= 0 else axis.scale
+def scaled_for_lut(axes: Sequence[Axis]) -> tuple[Axis, ...]:
+    """Return axes with the scales of a LUT: linear where a logarithmic axis begins at 0."""
+    return tuple(
+        replace(axis, scale="linear") if axis.scale == "logarithmic" and axis.lower <= 0 else axis
         for axis in axes
-    }
+    )
 
 
 def _with_border(grid: np.ndarray) -> np.ndarray:

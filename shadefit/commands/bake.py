@@ -164,7 +164,7 @@ def _domain(made: _Source, given: list[str]) -> "tuple[Axis, ...]":
     """
     from dataclasses import replace
 
-    from coefficients.lut import with_scales
+    from coefficients.lut import scaled_for_lut
     from integrals.reference import restricted
 
     full = {axis.name: axis for axis in made.owner.axes if made.fitted is None}
@@ -177,9 +177,9 @@ def _domain(made: _Source, given: list[str]) -> "tuple[Axis, ...]":
         found = {axis.name: axis for axis in restricted(whole, **{name: ends})}
         chosen[name] = found[name]
         scales |= {} if scale is None else {name: scale}
-    usual = with_scales(list(chosen.values()))
     return tuple(
-        replace(axis, scale=scales.get(axis.name, usual[axis.name])) for axis in chosen.values()
+        replace(axis, scale=scales.get(axis.name, axis.scale))
+        for axis in scaled_for_lut(list(chosen.values()))
     )
 
 

@@ -1,4 +1,4 @@
-"""Exact values at many points: the values of the leg, in the given order, with the right options."""
+"""Exact values at many points: in the given order, and with the options that the points need."""
 
 from dataclasses import replace
 
