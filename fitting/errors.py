@@ -1,6 +1,7 @@
 """How far a form is from the exact values on a set of points."""
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import jax
@@ -96,23 +97,28 @@ def measure(
 
 
 def judge(fitted: FittedForm, domain: Form | Domain | None = None) -> Errors:
-    """Return the errors of a form at points that no fit uses, in its own domain or in `domain`.
+    """Return the errors of a form at points that no fit uses, in its own domain or in `domain`."""
+    domain = fitted.form if domain is None else domain
+    return judge_values(functools.partial(form_values, fitted), domain)
+
+
+def judge_values(values_at: Callable[[np.ndarray], np.ndarray], domain: Form | Domain) -> Errors:
+    """Return the errors in a domain of a function from points (n, axes) to values (n,).
 
     The rms error is over scrambled Sobol' points. The largest error is the largest of three: over
     the same points; over further points, some of them on the faces, edges and corners of the domain
     and where the quantity is steep; and over the points that hill climbing finds from these, unless
     the quantity's sampling turns hill climbing off.
     """
-    domain = fitted.form if domain is None else domain
     points, exact = judging_points(domain)
-    inside = measure(form_values(fitted, points) - exact, points, domain)
+    inside = measure(values_at(points) - exact, points, domain)
     points, exact = checking_points(domain, OFF_GRID_SEED)
-    difference = form_values(fitted, points) - exact
+    difference = values_at(points) - exact
     found = [inside, measure(difference, points, domain)]
     if domain.reference.sampling.climbs:
 
         def error(x: np.ndarray) -> np.ndarray:
-            return form_values(fitted, x) - domain.reference.values(x)
+            return values_at(x) - domain.reference.values(x)
 
         top = climb(
             lambda x: np.abs(error(x)), points, np.abs(difference), domain.axes, OFF_GRID_SEED

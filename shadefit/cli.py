@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from shadefit.commands.ambient import ambient
+from shadefit.commands.bake import bake
 from shadefit.commands.compare import compare
 from shadefit.commands.cost import cost
 from shadefit.commands.evaluate import SETTINGS, evaluate
@@ -95,8 +96,15 @@ _add(
     "evaluate",
     evaluate,
     "Examples: shadefit evaluate ps --alpha 0.35 --theta-f 45deg --theta-u 30deg "
-    "--phi 90deg; shadefit evaluate g --density 0.2 --cos-v 0.5",
+    "--phi 90deg; shadefit evaluate g --density 0.2 --cos-v 0.5; "
+    "shadefit evaluate r --points points.csv --out values.npy",
     context_settings=SETTINGS,
+)
+_add(
+    "bake",
+    bake,
+    "Examples: shadefit bake r --size 64x64 --format ktx2 -o r.ktx2; "
+    "shadefit bake exact/g --size 32x32 --format exr --range density=0.001:0.5:logarithmic",
 )
 _add("list", list_tables, "Example: shadefit list --json")
 _add(

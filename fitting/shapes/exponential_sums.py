@@ -15,6 +15,8 @@ from integrals.reference import Axis, Reference
 _RATES = ((0.5, 30.0), (0.2, 8.0), (1.0, 200.0))
 # A start's amplitude is at most e to this.
 _LARGEST_EXPONENT = 50.0
+# The least square of a coefficient in the start of a monotone form.
+_LEAST = 1e-2
 
 
 def exponentials(
@@ -24,12 +26,14 @@ def exponentials(
     name: str,
     axes: tuple[Axis, ...] | None = None,
     constant: bool = False,
+    monotone: bool = False,
 ) -> Form:
     """Return the form Σ aₖ exp(−bₖ x), plus a constant c0 if `constant` is true.
 
-    It has one axis, and 1 ≤ k ≤ `terms`. A fit starts from rates bₖ that are evenly spaced in the
-    logarithm over the axis's width (over 1 if that is infinite). Raises ValueError for more than
-    one axis, and for less than one term.
+    It has one axis, and 1 ≤ k ≤ `terms`. If `monotone`, the squares of all coefficients are taken
+    in their place: the form is then positive and falls with x, whatever the coefficients. A fit
+    starts from rates bₖ that are evenly spaced in the logarithm over the axis's width (over 1 if
+    that is infinite). Raises ValueError for more than one axis, and for less than one term.
     """
     axes = reference.axes if axes is None else axes
     axis = only_axis(name, axes)
@@ -40,9 +44,9 @@ def exponentials(
     b, c0 = free_letter("b", [*taken, f"{a}1"]), free_letter("c", [*taken, f"{a}1"])
     names = [f"{letter}{k}" for k in range(1, terms + 1) for letter in (a, b)]
     first = [f"{c0}0"] if constant else []
-    text = " + ".join(
-        [*first, *(f"{a}{k} exp(−{b}{k} {axis.symbol})" for k in range(1, terms + 1))]
-    )
+    two = "²" if monotone else ""
+    parts = [f"{a}{k}{two} exp(−{b}{k}{two} {axis.symbol})" for k in range(1, terms + 1)]
+    text = " + ".join([*(f"{each}{two}" for each in first), *parts])
 
     def value(c, x) -> Any:
         at = len(first)
@@ -50,6 +54,9 @@ def exponentials(
         return functools.reduce(jnp.add, [*([c[0]] if constant else []), *parts])
 
     starts = tuple(_start(axis, terms, constant, *ends) for ends in _RATES)
+    if monotone:
+        # The derivative by c0 would be zero at c0 = 0.
+        starts = tuple(np.sqrt(np.maximum(start, _LEAST)) for start in starts)
     return Form(name, text, reference, axes, [*first, *names], (Stage(value),), starts=starts)
 
 

@@ -85,7 +85,13 @@ def sum_text(terms: Mapping[Exponents, str | float], symbols: Sequence[str]) -> 
         if isinstance(coefficient, str):
             factors.insert(0, coefficient)
         parts.append(" ".join(factors) or "1")
+    if len(parts) > _WRITTEN:
+        parts = [*parts[:3], "…", parts[-1]]
     return " + ".join(parts)
+
+
+# Longer sums are written with their first and last terms.
+_WRITTEN = 40
 
 
 _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -13,6 +13,9 @@ from fitting.shapes.exponential_sums import only_axis
 from fitting.shapes.monomial_sums import free_letter
 from integrals.reference import Axis, Reference
 
+# More points are written as the first and last ones.
+_WRITTEN = 40
+
 
 def piecewise_linear(
     reference: Reference,
@@ -47,8 +50,10 @@ def piecewise_linear(
             total = total + (c[k + 1] - c[k]) * ramp
         return total
 
-    at = ", ".join(f"({place:.6g}, {each})" for place, each in zip(x, names, strict=True))
-    equation = f"linear in {axis.symbol} between the points {at}"
+    points = [f"({place:.6g}, {each})" for place, each in zip(x, names, strict=True)]
+    if len(points) > _WRITTEN:
+        points = [*points[:3], "…", points[-1]]
+    equation = f"linear in {axis.symbol} between the points {', '.join(points)}"
     return Form(name, equation, reference, axes, names, (Stage(value),))
 
 

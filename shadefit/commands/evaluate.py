@@ -1,13 +1,15 @@
-"""`shadefit evaluate`: evaluate a quantity at one point, by every exact method and by tables."""
+"""`shadefit evaluate`: evaluate a quantity at points, by exact methods and by tables."""
 
 import functools
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from shadefit.commands.options import Json, angle, checked, flag_of
+from shadefit.commands.point_files import csv_text, read_points, require_format, written
 from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
@@ -40,6 +42,17 @@ def evaluate(
         Literal["random", "sobol"], typer.Option(help="Kind of the Monte Carlo points.")
     ] = "random",
     seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo points.")] = 0,
+    points: Annotated[
+        Path | None,
+        typer.Option(
+            help="File of many points: CSV with the arguments' names in its first line, or an NPY "
+            "array (points, arguments). Angles are in radians."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="With --points: the file to write, CSV or NPY; by default CSV is shown."),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Evaluate an integral at one point, by all exact methods and by tables.
@@ -51,7 +64,17 @@ def evaluate(
     --alpha, --theta-f, --theta-u and --phi of ps; --density and --cos-v of g;
     --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
     Angles are in radians, or in degrees with 'deg': 0.785, 0.785rad, 45deg.
+
+    --points evaluates at many points, by the most exact method and by tables.
+    The columns are the arguments, exact, error, and the tables; nan is no value.
     """
+    if points is not None:
+        if arguments:
+            raise ValueError(f"{arguments[0]}: allowed are either arguments or --points, not both")
+        run_points(integral, points, table or [], out, json)
+        return
+    if out is not None:
+        raise ValueError("--out: allowed only with --points")
     run(integral, arguments or [], table or [], samples, sequence, seed, json)
 
 
@@ -69,13 +92,9 @@ def run(
     Prints the values of every leg, of the published table, of the refitted one, and of the tables
     that `extra` names.
     """
-    from quantities import problems
     from shadefit.terminal import place, print_json, print_table
 
-    known = problems()
-    if name not in known:
-        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(known)}")
-    owner = known[name]
+    owner = _owner(name)
     reference = owner.reference
     arguments = axis_values(owner, given)
     if not 2 <= samples <= MAX_SAMPLES:
@@ -110,6 +129,53 @@ def run(
         "Error: stated by the leg (Monte Carlo: one standard error); of a table, its distance "
         "from the exact value.",
     )
+
+
+def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: bool) -> None:
+    """Evaluate the quantity `name` at the points of a file; write the columns, or print them."""
+    import numpy as np
+
+    from coefficients.files import require_writable_file, write_whole_bytes
+    from fitting import form_values
+    from integrals.many_points import estimates_at_many
+    from shadefit.terminal import print_json
+
+    owner = _owner(name)
+    if out is not None:
+        require_format(out)
+        require_writable_file(out)
+    tables = _tables(owner, extra)
+    points = read_points(file, owner.axes)
+    found = estimates_at_many(owner.reference, points)
+    columns = {axis.name: points[:, k] for k, axis in enumerate(owner.axes)}
+    columns |= {"exact": np.asarray(found.value), "error": np.asarray(found.error)}
+    for label, fitted in tables.items():
+        inside = [axis.contains(points[:, k]) for k, axis in enumerate(fitted.axes)]
+        columns[label] = np.where(np.all(inside, axis=0), form_values(fitted, points), np.nan)
+    if out is not None:
+        write_whole_bytes(out, written(columns, require_format(out)))
+    if json:
+        # JSON has no nan.
+        rows = {
+            label: [value if math.isfinite(value) else None for value in values.tolist()]
+            for label, values in columns.items()
+        }
+        shown = {"columns": list(columns)} if out is not None else {"columns": rows}
+        file_shown = None if out is None else str(out)
+        print_json({"quantity": name, "points": len(points), "file": file_shown, **shown})
+    elif out is None:
+        print(csv_text(columns), end="")
+    else:
+        print(out)
+
+
+def _owner(name: str) -> "Problem":
+    from quantities import problems
+
+    known = problems()
+    if name not in known:
+        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(known)}")
+    return known[name]
 
 
 def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:

@@ -127,8 +127,8 @@ def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) ->
 
 def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
+    from coefficients.textures.exr import write_exr
     from shadefit.render.comparison import compare, exr_channels
-    from shadefit.render.exr import write_exr
     from shadefit.render.sheet import draw_comparisons
     from shadefit.terminal import print_json, print_table, stages
 

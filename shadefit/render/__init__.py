@@ -4,5 +4,5 @@
 * `functions`: P_s, G, Q and R, exact or as a set of tables is exported
 * `settings`: what the user chooses; `shade`: the radiance of samples; `image`: their averages
 * `comparison`: images with tables against the exact one; `sheet` and `sweep`: pictures of them
-* `srgb` and `exr`: colours and image files
+* `srgb`: colours
 """

@@ -9,7 +9,7 @@ import pytest
 from fitting.fit import fit
 from fitting.shapes import exponentials
 from integrals import Axis, Estimate
-from tests.fitting.lines import LINE
+from tests.fitting.lines import LINE, operations
 from tests.fitting.toys import TOY
 
 
@@ -45,6 +45,20 @@ def test_starts_do_not_overflow_and_fit_the_width(lower, upper):
             assert np.isfinite(start).all()
             assert (start[1::2] > 0).all()
             assert float(form(start, lower)) == pytest.approx(1) or lower > 100
+
+
+def test_a_monotone_sum_is_positive_and_falls_whatever_the_coefficients():
+    form = exponentials(LINE, 2, name="e", constant=True, monotone=True)
+    assert form.equation == "c0² + a1² exp(−b1² η) + a2² exp(−b2² η)"
+    for c in np.random.default_rng(4).normal(size=(20, 5)):
+        values = [float(form(c, eta)) for eta in (1.0, 1.5, 3.0)]
+        assert values[0] > values[1] > values[2] > 0
+        expected = c[0] ** 2 + sum(a * a * np.exp(-b * b * 1.5) for a, b in (c[1:3], c[3:]))
+        assert values[1] == pytest.approx(expected, rel=1e-14)
+    assert all((start > 0).all() for start in form.starts)
+    # The squares of constants are constants: the code of the form costs no more.
+    c = np.array([0.1, 1.0, 2.0, 0.5, 1.5])
+    assert operations(form, c) == operations(exponentials(LINE, 2, name="e", constant=True), c)
 
 
 def test_several_axes_and_no_terms_are_refused():

@@ -15,10 +15,10 @@ from PIL import Image
 import integrals
 from coefficients.catalogue import entries
 from coefficients.exported_code import exported_values
+from coefficients.textures.exr import write_exr
 from quantities.fuzz import PS, G, Q, R
 from shadefit.cli import main
 from shadefit.commands.render import run
-from shadefit.render.exr import write_exr
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import CHOICES, EXACT, table_sets
 from shadefit.render.image import render_image

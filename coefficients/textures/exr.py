@@ -5,19 +5,20 @@ import struct
 import numpy as np
 
 _MAGIC, _VERSION = 20000630, 2
-# The pixel type of 32-bit floats.
-_FLOAT = 2
+# The numbers of the pixel types: half floats and 32-bit floats.
+_PIXELS = {"<f2": 1, "<f4": 2}
 
 
-def write_exr(channels: dict[str, np.ndarray]) -> bytes:
-    """Return an OpenEXR file of named channels (height, width), stored as 32-bit floats.
+def write_exr(channels: dict[str, np.ndarray], pixel: str = "<f4") -> bytes:
+    """Return an OpenEXR file of named channels (height, width), stored as `pixel`.
 
-    A channel with the name 'layer.R' is the red channel of a layer.
+    `pixel` is '<f4' for 32-bit floats and '<f2' for half floats. A channel with the name 'layer.R'
+    is the red channel of a layer.
     """
-    names = sorted(channels)
+    names, size = sorted(channels), np.dtype(pixel).itemsize
     height, width = channels[names[0]].shape
     listed = b"".join(
-        name.encode() + b"\0" + struct.pack("<iB3xii", _FLOAT, 0, 1, 1) for name in names
+        name.encode() + b"\0" + struct.pack("<iB3xii", _PIXELS[pixel], 0, 1, 1) for name in names
     )
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     attributes = (
@@ -35,9 +36,9 @@ def write_exr(channels: dict[str, np.ndarray]) -> bytes:
         header += key.encode() + b"\0" + kind.encode() + b"\0"
         header += struct.pack("<i", len(value)) + value
     header += b"\0"
-    line = 8 + 4 * width * len(names)
+    line = 8 + size * width * len(names)
     first = len(header) + 8 * height
     offsets = struct.pack(f"<{height}Q", *(first + line * y for y in range(height)))
-    stacked = np.stack([channels[name] for name in names], axis=1).astype("<f4")
+    stacked = np.stack([channels[name] for name in names], axis=1).astype(pixel)
     rows = [struct.pack("<2i", y, line - 8) + stacked[y].tobytes() for y in range(height)]
     return header + offsets + b"".join(rows)
