@@ -7,6 +7,7 @@ import math
 import sys
 import zipfile
 from collections.abc import Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ from jaxtyping import Float, Shaped
 # A larger file is refused before it is read.
 MAX_BYTES = 1 << 30
 _SEED = 20200901
+# The folder of the problem file that is being loaded.
+PROBLEM_FOLDER: ContextVar[Path | None] = ContextVar("PROBLEM_FOLDER", default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +93,11 @@ def table(
     Arguments: `x`, the names of the columns of the axes, in the axes' order; `y`, that of the
     values; `sigma`, that of the standard deviations; `hold_out` as for `samples`. An NPY file holds
     a structured array, or an array (n, columns) whose columns are named '0', '1', …; an NPZ file
-    one array (n,) for each name. A relative path is that from the calling file's folder if the file
-    is there, else from the working folder. Raises ValueError for a file that cannot be read, a
+    one array (n,) for each name. A relative path starts at the folder of the problem file that is
+    loaded, or of the script that runs, if the file is there; else at the working folder. Raises ValueError for a file that cannot be read, a
     column that it does not have, and a number that is not finite, with its line.
     """
-    path = _located(Path(file), sys._getframe(1).f_globals.get("__file__"))
+    path = _located(Path(file))
     content = _content(path)
     columns = _READERS[path.suffix.lower()](content, path)
     wanted = [*x, y, *([sigma] if sigma else [])]
@@ -119,9 +122,10 @@ def column_names(file: str | Path) -> list[str]:
     return list(_READERS[path.suffix.lower()](_content(path), path))
 
 
-def _located(path: Path, caller: str | None) -> Path:
-    beside = Path(caller).parent / path if caller and not path.is_absolute() else path
-    return beside if beside.is_file() else path
+def _located(path: Path) -> Path:
+    script = getattr(sys.modules["__main__"], "__file__", None)
+    folder = PROBLEM_FOLDER.get() or (Path(script).parent if script else Path())
+    return folder / path if (folder / path).is_file() else path
 
 
 def _content(path: Path) -> bytes:

@@ -9,6 +9,7 @@ import sys
 import traceback
 from pathlib import Path
 
+from integrals.data import PROBLEM_FOLDER
 from quantities.problem import Problem
 from quantities.registry import register, unregister
 
@@ -70,6 +71,7 @@ def _declared(path: Path) -> list[Problem]:
     module = importlib.util.module_from_spec(spec)
     # Traced functions look their source up by the module.
     sys.modules[name] = module
+    token = PROBLEM_FOLDER.set(path.parent)
     try:
         spec.loader.exec_module(module)
     except Exception as error:
@@ -79,6 +81,8 @@ def _declared(path: Path) -> list[Problem]:
             raise ProblemFileError(_own_traceback(error, path)) from None
         place = "" if str(error).startswith(f"{path.name}:") else f"{path.name}:{line}: "
         raise ValueError(f"{place}{error}") from None
+    finally:
+        PROBLEM_FOLDER.reset(token)
     values = [value for key, value in vars(module).items() if not key.startswith("__")]
     return list(dict.fromkeys(value for value in values if isinstance(value, Problem)))
 
