@@ -5,7 +5,7 @@ from scipy.optimize import linprog
 
 from fitting.form import Form
 from fitting.linearity import linear_parts
-from fitting.solvers.minimax import largest_of
+from fitting.solvers.residuals import largest_of
 
 # The bound is tried at these fractions of the largest error that was found, the highest first.
 LEVELS = (0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)

@@ -18,9 +18,6 @@ Jacobian = Callable[[np.ndarray], np.ndarray]
 
 # A step is taken if the sum of squares falls by this part of what the linearised residual promises.
 _WORTHWHILE = 1e-4
-# The descent ends if the linearised residual promises to lower the sum of squares by less than this
-# fraction of it: the rounding of the sum hides smaller gains.
-_PROMISED = 1e-15
 # At most so many Gauss–Newton steps follow.
 _POLISHED = 100
 # A singular value of the scaled Jacobian below this part of the largest is rounding.
@@ -93,13 +90,15 @@ def levenberg_marquardt(
     start: np.ndarray,
     steps: int = 1000,
     reach: float = 1.0,
+    worthwhile: float = 1e-15,
 ) -> Descent:
     """Minimise |residual(z)|² from `start` (m,).
 
-    `residual` maps z to (n,) and `jacobian` to (n, m), with n ≥ m. A z whose residual is not finite
+    `residual` maps z to (n,) and `jacobian` to (n, m). A z whose residual is not finite
     is not entered, so that a function may return ∞ where z is not allowed. `steps` is the largest
     number of Jacobians. The first step may be `reach` times as long as z, in the scale of the
-    Jacobian's columns.
+    Jacobian's columns. The descent ends if the linearised residual promises to lower the sum of
+    squares by less than the fraction `worthwhile`; the rounding of the sum hides gains below 1e-15.
     """
     z = np.asarray(start, float)
     r = residual(z)
@@ -111,7 +110,7 @@ def levenberg_marquardt(
         if tangent is None:
             break
         size = np.linalg.norm(r)
-        if size == 0 or tangent.in_tangent**2 <= _PROMISED * size**2:
+        if size == 0 or tangent.in_tangent**2 <= worthwhile * size**2:
             break
         if radius is None:
             radius = reach * (np.linalg.norm(scale * z) or 1.0)
@@ -119,7 +118,7 @@ def levenberg_marquardt(
         if taken is None:
             break
         z, r = taken
-    return _polished(residual, jacobian, z, r, scale)
+    return _polished(residual, jacobian, z, r, scale, worthwhile)
 
 
 def _tangent(jacobian: Jacobian, z, r, scale) -> tuple[_Tangent | None, np.ndarray]:
@@ -130,7 +129,7 @@ def _tangent(jacobian: Jacobian, z, r, scale) -> tuple[_Tangent | None, np.ndarr
     scale = np.maximum(scale, np.linalg.norm(matrix, axis=0))
     unit = np.where(scale > 0, scale, 1.0)
     q, triangle = np.linalg.qr(matrix / unit)
-    left, singular, right = np.linalg.svd(triangle)
+    left, singular, right = np.linalg.svd(triangle, full_matrices=False)
     if not singular[0] > 0:
         return None, scale
     return _Tangent(unit, singular, right, left.T @ (q.T @ r)), scale
@@ -163,10 +162,10 @@ def _take(residual: Residual, tangent: _Tangent, z, r, radius):
     return None, radius
 
 
-def _polished(residual: Residual, jacobian: Jacobian, z, r, scale) -> Descent:
+def _polished(residual: Residual, jacobian: Jacobian, z, r, scale, worthwhile) -> Descent:
     """Take Gauss–Newton steps while they shrink, then tell whether the end is stationary."""
     last, cosine = np.inf, np.inf
-    for _ in range(_POLISHED):
+    for _ in range(_POLISHED if worthwhile <= 1e-12 else 1):
         tangent, scale = _tangent(jacobian, z, r, scale)
         if tangent is None:
             break

@@ -15,7 +15,7 @@ the unknowns are the coordinates of an orthonormal basis of the tangent space, s
 in a program are of the order of one, however small the errors are and whatever the monomials.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import linprog
@@ -44,7 +44,8 @@ class _Lines:
     At a step δ, the errors of a quotient are (error + slopes·δ)/(1 + growth·δ), exactly. For any
     other form growth is zero, and the errors are those of the tangent. What must stay positive is
     multiplied by 1 + room·δ, at points of its own. The step is sought in the columns of `steps`.
-    `weight` (at most 1) multiplies the rows of errors whose slopes are large.
+    `weight` (at most 1) multiplies the rows of errors whose slopes are large. `size` is the largest
+    error, by which the program divides.
     """
 
     error: np.ndarray
@@ -53,6 +54,7 @@ class _Lines:
     room: np.ndarray
     steps: np.ndarray
     weight: np.ndarray
+    size: float
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class Minimax:
       ends after `patience` idle ones.
     * `over`: an error beyond what is allowed costs this many times as much as an allowed one in a
       linear program. It is not forbidden, because the start may have such errors.
+    * `corrections`: the most further programs of a step that correct it for curvature.
     """
 
     programs: int = 100
@@ -81,6 +84,7 @@ class Minimax:
     worthwhile: float = 1e-5
     patience: float = 4
     over: float = 100.0
+    corrections: int = 3
 
     def __call__(self, problem: Residuals, start: np.ndarray, side: Side = "both") -> np.ndarray:
         """Return the coefficients (m,) with the least largest error that were found from `start`.
@@ -114,7 +118,8 @@ class Minimax:
                 best, least = z, size.max()
             kept |= largest_of(size, count // 4) & (size > known)
             rows = np.nonzero(kept)[0]
-            trial, promised = self._step(problem, z, error, rows, allowed, self.trust)
+            lines = _of_quotient(problem, z, error, rows, self.rows)
+            trial, promised = self._step(lines, z, rows, allowed, self.trust)
             if promised < _OPTIMAL or idle >= self.patience:
                 break
             tried, lowered = problem.values(trial), _lowered(problem, z, trial)
@@ -132,7 +137,11 @@ class Minimax:
         return best
 
     def _by_tangents(self, problem: Residuals, start: np.ndarray, allowed) -> np.ndarray:
-        """Minimise the largest error of any form: locally, with a trust region."""
+        """Minimise the largest error of any form: locally, with a trust region.
+
+        Where the errors at the end of a step are not those of the tangent, a second program has
+        the difference added to its errors, so that the step follows the curvature.
+        """
         best, trust, idle = start, self.trust, 0.0
         error = problem.values(best)
         least = badness(error, *allowed).max()
@@ -143,12 +152,25 @@ class Minimax:
             if kept.sum() > 3 * count:
                 kept = largest_of(badness(error, *allowed), count)
             rows = np.nonzero(kept)[0]
-            trial, promised = self._step(problem, best, error, rows, allowed, trust)
+            lines = _of_tangent(problem, best, error, rows, self.rows)
+            found, value, promised = None, np.inf, 0.0
+            for _ in range(1 + self.corrections):
+                trial, gain = self._step(lines, best, rows, allowed, trust)
+                promised = promised if found else gain
+                tried = problem.values(trial)
+                good = problem.positive(trial).min() > 0
+                size = badness(tried, *allowed).max() if good else np.inf
+                if found is None or size < value * (1 - 1e-10):
+                    found, value = (trial, tried), size
+                else:
+                    break
+                if not np.isfinite(size) or size <= least * (1 - 0.9 * gain):
+                    break
+                bent = tried[rows] - lines.slopes @ (trial - best)
+                lines = replace(lines, error=bent)
+            trial, tried = found or (best, error)
             if promised < _OPTIMAL and trust >= self.trust:
                 break
-            tried = problem.values(trial)
-            good = problem.positive(trial).min() > 0
-            value = badness(tried, *allowed).max() if good else np.inf
             if value < least * (1 - 1e-10):
                 idle = 0.0 if value < least * (1 - self.worthwhile) else idle + 1
                 best, error, least = trial, tried, value
@@ -161,17 +183,14 @@ class Minimax:
                 break
         return best
 
-    def _step(self, problem, z, error, rows, allowed, trust) -> tuple[np.ndarray, float]:
+    def _step(self, lines: "_Lines", z, rows, allowed, trust) -> tuple[np.ndarray, float]:
         """Return coefficients (m,) that minimise the largest error at points `rows`.
 
         The second result is the part of the largest error that the program takes away; ∞ if the
         program also lowers errors that are not allowed, or is not solved. If it is not solved, the
         coefficients are `z`.
         """
-        quotient = problem.parts is not None
-        lines = _of_quotient(problem, z, error, rows, self.rows) if quotient else None
-        lines = lines or _of_tangent(problem, z, error, rows, self.rows)
-        size = np.abs(error[rows]).max()
+        size = lines.size
         basis = lines.steps @ _basis(lines.weight[:, None] * lines.slopes @ lines.steps) * size
         count = basis.shape[1]
         if not count:
@@ -190,6 +209,7 @@ class Minimax:
             _rows(low * g - s, e - least, np.isfinite(least), 1, lines.weight),
             _rows(-lines.room @ basis, np.full(len(lines.room), 1 - _LOWERED)),
         ]
+        quotient = len(lines.steps) > len(z)
         if quotient:
             # The scale of numerator and denominator, the last of the unknowns, stays positive.
             parts.append(_rows(-basis[-1:], np.array([1 - _LOWERED])))
@@ -224,6 +244,7 @@ def _of_tangent(problem: Residuals, z, error, rows, count: int) -> _Lines:
         slopes[held] / np.maximum(room[low][held], 1e-300)[:, None],
         np.eye(len(z)),
         np.ones(len(rows)),
+        np.abs(error[rows]).max(),
     )
 
 
@@ -248,7 +269,8 @@ def _of_quotient(problem: Residuals, z, error, rows, count: int) -> _Lines:
     steps = unit[:, None] * _across(mean * unit)
     # Where a denominator is small, its row is divided by what it may grow to.
     weight = np.minimum(weight, 1)
-    return _Lines(error[rows], slopes, growth[rows], growth[near], steps, weight[rows])
+    size = np.abs(error[rows]).max()
+    return _Lines(error[rows], slopes, growth[rows], growth[near], steps, weight[rows], size)
 
 
 def _across(row: np.ndarray) -> np.ndarray:
