@@ -12,8 +12,8 @@ from fitting.points.sample import Sample
 from fitting.proofs.least_error import least_error
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
-from fitting.solvers.exchange import Exchange
-from fitting.solvers.on_grid import MARQUARDT, GridFit, OnGrid, Progress
+from fitting.solvers.exchange import Exchange, ScatteredFit
+from fitting.solvers.on_grid import GridFit, OnGrid, Progress
 from programs.bounding.branch_and_bound import Bounds
 from programs.bounding.denominators import DenominatorBound
 
@@ -46,6 +46,9 @@ class Fit:
       can have; None if there is no such proof.
     * `range`: proven bounds of all values, which lie between 0 and 1 up to rounding; None if this
       is not proven.
+    * `converged`: whether the solver reached what it looks for: for least squares a minimum, for
+      the largest error one that is nowhere larger than at the points of the fit. If it is false,
+      `solver` says what happened, and the fit is only as good as its errors say.
     * `below`: a number whose positive sign proves that no value is above the exact one; None for a
       form that has no such proof.
     """
@@ -63,6 +66,7 @@ class Fit:
     least_error: float | None = None
     range: Bounds | None = None
     below: float | None = None
+    converged: bool = True
 
 
 def fit(
@@ -98,9 +102,9 @@ def fit(
             return _on_grid(form, found, nodes)
         start = np.asarray(found.coefficients).ravel()
     solver = exchange or Exchange()
-    coefficients, sample = solver.fit(form, goal, measure, start, progress)
+    found = solver.fit(form, goal, measure, start, progress)
     progress(f"{form.name}: errors and certificate")
-    return _scattered(form, coefficients, sample, goal, measure)
+    return _scattered(form, found, goal, measure)
 
 
 def _require(form: Form, goal: Goal, nodes: int | None) -> None:
@@ -152,11 +156,9 @@ def _on_grid(form: Form, found: GridFit, nodes: int) -> Fit:
     )
 
 
-def _scattered(
-    form: Form, coefficients: np.ndarray, sample: Sample, goal: Goal, weights: str
-) -> Fit:
+def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit:
     """Measure the errors of a fit to scattered points, and prove what can be proven."""
-    fitted = form.fitted(coefficients)
+    fitted, sample = form.fitted(found.coefficients), found.sample
     certificate = certify_denominators(fitted, ENOUGH)
     if not certificate.holds:
         raise ValueError(
@@ -172,13 +174,13 @@ def _scattered(
     errors = form_values(fitted, sample.points) - sample.exact
     least = None
     if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
-        least = least_error(form, sample.points, sample.exact, errors)
+        least = least_error(fitted, sample.points, sample.exact, sample.error)
     return Fit(
         fitted=fitted,
         grid=sample,
         measure=weights,
         inner=0,
-        solver=MARQUARDT + ("; linear programs (HiGHS)" if goal.norm == "linf" else ""),
+        solver=found.solver,
         reference_error=sample.error,
         on_grid=measure(errors, sample.points, form),
         off_grid=judge(fitted),
@@ -186,4 +188,5 @@ def _scattered(
         goal=goal,
         least_error=least,
         range=values,
+        converged=found.converged,
     )

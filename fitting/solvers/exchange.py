@@ -10,22 +10,37 @@
 
 from dataclasses import dataclass, field
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jax import Array
 
-from fitting.errors import climb
 from fitting.form import Form
 from fitting.goal import Goal
-from fitting.linearity import linear_parts, positive_of
 from fitting.points.sample import SEED, Sample, sample_at, sample_of, scale_at
 from fitting.points.scattered import checking_points
-from fitting.solvers.least_squares import solve_nonlinear
-from fitting.solvers.minimax import Minimax, Residuals, badness, limits, residuals
+from fitting.solvers.extrema import worst_points
+from fitting.solvers.minimax import Minimax
 from fitting.solvers.on_grid import Progress
+from fitting.solvers.residuals import Residuals, badness, limits, residuals
+from fitting.solvers.scattered_squares import fit_squares
+from fitting.solvers.starts import quotient_starts
 
 PRECISIONS = {"float32": np.float32, "float16": np.float16}
+SQUARES = "Levenberg–Marquardt (QR)"
+
+
+@dataclass(frozen=True)
+class ScatteredFit:
+    """The result of a fit to scattered points.
+
+    * `coefficients` (m,): flat. `sample`: the points on which they were fitted.
+    * `converged`: for least squares, whether no small step lowers the sum of squares; for the
+      largest error, whether it is the same elsewhere as at the points, to the fraction `settled`.
+    * `solver`: the solver, in words, and whether it did not converge.
+    """
+
+    coefficients: np.ndarray
+    sample: Sample
+    converged: bool
+    solver: str
 
 
 @dataclass(frozen=True)
@@ -33,13 +48,11 @@ class Exchange:
     """The solver of fits to scattered points, with its tuning constants.
 
     * `steps`: the most steps of least squares. A form with more than `many` coefficients takes at
-      most `steps_of_many`, because each of its steps is slow.
-    * `penalty_floor`: in least squares, a penalty applies where the number that must stay positive
-      is below this.
-    * `linearised`: the number of linear fits that compute a start for a quotient. Each divides the
-      errors by the denominator of the fit before.
+      most `steps_of_many`, because each of its steps is slow, and does not try further starts.
+    * `worthwhile`: for the largest error, least squares give only the start, and end when a step
+      promises to lower the sum of squares by less than this fraction.
     * `exchanges`, `exchanged`, `settled`: at most `exchanges` times, up to `exchanged` points with
-      the largest errors outside the sample are added to it, and those that hill climbing finds. The
+      the largest errors outside the sample are added to it, and those that a search finds. The
       exchange ends when their largest error exceeds that of the sample by at most the fraction
       `settled`.
     * `turns`: the number of groups in which the coefficients are rounded.
@@ -50,19 +63,18 @@ class Exchange:
     steps: int = 1000
     steps_of_many: int = 200
     many: int = 20
-    penalty_floor: float = 1e-2
-    linearised: int = 8
-    exchanges: int = 8
+    worthwhile: float = 1e-8
+    exchanges: int = 12
     exchanged: int = 300
-    settled: float = 1e-3
+    settled: float = 5e-5
     turns: int = 4
     minimax: Minimax = field(default_factory=Minimax)
-    minimax_of_rounding: Minimax = field(default_factory=lambda: Minimax(programs=6))
+    minimax_of_rounding: Minimax = field(default_factory=lambda: Minimax(programs=20))
 
     def fit(
         self, form: Form, goal: Goal, measure: str, start: np.ndarray | None, progress: Progress
-    ) -> tuple[np.ndarray, Sample]:
-        """Return flat coefficients, and the sample on which they were fitted.
+    ) -> ScatteredFit:
+        """Fit a form to the points of its quantity.
 
         `start`, flat coefficients, replaces the form's own starts. `progress` is called with a text
         before each step. Raises ValueError if no start leads to a form without poles.
@@ -70,87 +82,78 @@ class Exchange:
         progress(f"exact {form.reference.symbol} where {form.name} is fitted")
         sample = sample_of(form, goal, measure)
         progress(f"{form.name}: least squares")
-        starts = [start] if start is not None else list(form.starts)
-        if not starts:
-            starts = [self._linear_start(form, sample)]
-        found = self._least_squares(form, sample, goal, starts)
+        found, converged, words = self.least_squares(form, sample, goal, start)
         if goal.norm == "linf":
             progress(f"{form.name}: least largest error")
-            found, sample = self._least_largest(form, sample, goal, measure, found)
+            found, sample, converged = self._least_largest(form, sample, goal, measure, found)
+            words = f"{SQUARES}; linear programs (HiGHS)"
+            if not converged:
+                words += f"; the largest error did not settle in {self.exchanges} exchanges"
         if goal.rounding != "none":
             progress(f"{form.name}: rounding to {goal.rounding}")
             found = self._rounded(form, sample, goal, found)
-        return found, sample
+        return ScatteredFit(found, sample, converged, words)
 
-    def _linear_start(self, form: Form, sample: Sample) -> np.ndarray:
-        """Return the coefficients of the last of the linear fits with positive denominators.
+    def least_squares(
+        self, form: Form, sample: Sample, goal: Goal, start: np.ndarray | None = None
+    ) -> tuple[np.ndarray, bool, str]:
+        """Return flat coefficients, whether the descent converged, and the solver in words.
 
-        Raises ValueError for a form that is no quotient of linear functions, and if the first fit
-        already has a denominator that is not positive.
+        The starts are `start`, or else those of the form and, for a quotient of linear functions,
+        those of `quotient_starts`. Raises ValueError if there is no start, and if no start leads to
+        a form without poles.
         """
-        parts = linear_parts(form, sample.points)
-        if parts is None:
-            raise ValueError(f"{form.name} has no starts: give one")
-        denominator, found = parts.b0, None
-        for _ in range(self.linearised):
-            matrix = (parts.a - sample.exact[:, None] * parts.b) / denominator[:, None]
-            values = (sample.exact * parts.b0 - parts.a0) / denominator
-            z = np.linalg.lstsq(matrix, values, rcond=None)[0]
-            denominator = parts.b0 + parts.b @ z
-            if denominator.min() <= 0:
-                break
-            found = z
-        if found is None:
-            raise ValueError(f"{form.name}: its linear problem has a pole; try other monomials")
-        return found
-
-    def _least_squares(
-        self, form: Form, sample: Sample, goal: Goal, starts: list[np.ndarray]
-    ) -> np.ndarray:
-        root, positive = sample.scale / np.sqrt(len(sample.exact)), positive_of(form)
-
-        def residual(z: Array) -> Array:
-            c = z.reshape(form.coefficient_shape)
-            values = jax.vmap(lambda p: form(c, *p))(sample.points)
-            short = self.penalty_floor - jax.vmap(lambda p: positive(c, *p))(sample.points)
-            penalty = jnp.maximum(short, 0) / np.sqrt(len(sample.exact))
-            return jnp.concatenate([root * (values - sample.exact), penalty])
-
-        steps = self.steps if len(starts[0]) <= self.many else self.steps_of_many
-        fit = jax.jit(lambda z: solve_nonlinear(residual, z, steps, rtol=1e-11, atol=1e-12))
         problem = _problem(form, sample, goal)
-        ends = [np.asarray(fit(jnp.asarray(z))) if len(z) else z for z in starts]
-        good = [z for z in ends if _is_good(problem, z)]
-        if not good:
+        starts = list(form.starts) if start is None else [start]
+        linear = problem.parts is not None and not np.any(problem.parts.b)
+        if start is None and (linear or not starts):
+            starts = quotient_starts(problem)
+            if problem.parts is None:
+                raise ValueError(f"{form.name} has no starts: give one")
+            if not starts:
+                raise ValueError(f"{form.name}: its linear problem has a pole; try other monomials")
+        many = len(starts[0]) > self.many
+        found = fit_squares(
+            problem,
+            starts,
+            self.steps_of_many if many else self.steps,
+            1e-15 if goal.norm == "l2" else self.worthwhile,
+            0 if many or goal.norm != "l2" else 3,
+        )
+        if found is None and start is None and form.starts:
+            found = fit_squares(problem, quotient_starts(problem) or starts, self.steps)
+        if found is None:
             raise ValueError(f"{form.name}: no start gives a form without poles")
-        return min(good, key=lambda z: float(np.linalg.norm(problem.values(z))))
+        words = "QR" if linear else SQUARES
+        return found.z, found.converged, f"{words}; {found.words}" if found.words else words
 
     def _least_largest(
         self, form: Form, sample: Sample, goal: Goal, measure: str, start: np.ndarray
-    ) -> tuple[np.ndarray, Sample]:
+    ) -> tuple[np.ndarray, Sample, bool]:
         """Minimise the largest error, adding points with larger errors to the sample in turn.
 
-        Returns the coefficients with the least largest error, inside and outside the sample, and
-        the extended sample.
+        Returns the coefficients with the least largest error, inside and outside the sample, the
+        extended sample, and whether the last largest error is nowhere larger.
         """
-        best, least, found = start, np.inf, start
+        best, least, found, settled = start, np.inf, start, not len(start)
         for turn in range(self.exchanges if len(start) else 0):
             problem = _problem(form, sample, goal)
             found = self.minimax(problem, found, goal.side)
             worst, size = self._worst_elsewhere(form, found, goal, measure, SEED + 2 + turn)
             known = badness(problem.values(found), *limits(problem, goal.side)).max()
+            settled = size <= known * (1 + self.settled)
             if max(known, size) < least:
                 best, least = found, max(known, size)
-            if size <= known * (1 + self.settled):
+            if settled:
                 break
             sample = sample.extended(worst)
-        return best, sample
+        return best, sample, settled
 
     def _worst_elsewhere(self, form: Form, found: np.ndarray, goal: Goal, measure: str, seed: int):
         """Return the points outside the sample with the largest errors, and the largest error.
 
-        They come from a finer set of points, and from hill climbing that starts there. An error
-        that the goal does not allow counts as much larger (`badness`).
+        They come from a finer set of points, and from a search for local maxima that starts there.
+        An error that the goal does not allow counts as much larger (`badness`).
         """
 
         def size(points: np.ndarray, exact: np.ndarray) -> np.ndarray:
@@ -165,18 +168,22 @@ class Exchange:
         sizes = size(points, exact)
         worst = points[np.argsort(-sizes)[: self.exchanged]]
         if form.reference.sampling.climbs:
-            worst = np.concatenate([worst, climb(size_at, points, sizes, form.axes, seed)])
+            worst = np.concatenate([worst, worst_points(size_at, points, sizes, form.axes, seed)])
         added = sample_at(worst, form, goal, measure)
         return added, float(size(added.points, added.exact).max())
 
     def _rounded(self, form: Form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
-        """Round the coefficients in groups. After each, refit those that are not yet rounded."""
+        """Round the coefficients in groups. After each, refit those that are not yet rounded.
+
+        Raises ValueError for a coefficient that is too large for the precision.
+        """
         dtype = PRECISIONS[goal.rounding]
         slopes = _problem(form, sample, goal).slopes(found, np.arange(len(sample.exact)))
         # The coefficients whose rounding may change the values most come first.
         order = np.argsort(-np.abs(found) * np.max(np.abs(slopes), axis=0, initial=0.0))
         free, found = np.full(len(found), True), found.copy()
         for turn in np.array_split(order, min(self.turns, max(len(order), 1))):
+            _require_range(form, found, goal.rounding)
             found[turn] = found[turn].astype(dtype).astype(float)
             free[turn] = False
             if free.any():
@@ -204,5 +211,12 @@ def _problem(
     return residuals(form, sample.points, sample.exact, sample.scale, free, fixed, goal.bounded)
 
 
-def _is_good(problem: Residuals, z: np.ndarray) -> bool:
-    return bool(np.isfinite(problem.values(z)).all() and problem.positive(z).min() > 0)
+def _require_range(form: Form, found: np.ndarray, rounding: str) -> None:
+    largest = float(np.finfo(PRECISIONS[rounding]).max)
+    worst = int(np.argmax(np.abs(found)))
+    if not np.abs(found[worst]) <= largest:
+        name = np.ravel(form.coefficient_names)[worst]
+        raise ValueError(
+            f"{form.name}: the coefficient {name!r} = {found[worst]:.6g} is too large for "
+            f"{rounding}: allowed are −{largest:.6g} to {largest:.6g}; scale the form's terms"
+        )

@@ -1,109 +1,60 @@
 """Coefficients with the least largest error, by a sequence of linear programs.
 
-Each linear program replaces the form by its tangent at the present coefficients, and lets them move
-only within a trust region, where the tangent is close to the form. A form that is linear in its
-coefficients is its own tangent, so that the result is the global minimum. For other forms it is a
-local minimum.
+The errors of a quotient N/D of linear functions are at most t where |N − f·D| ≤ t·D, which is
+linear in the coefficients. Each linear program lowers t as far as the denominator of the present
+coefficients allows (differential correction: Barrodale, Powell and Roberts 1972). The result is the
+global minimum at the points. For a form that is linear in its coefficients, D = 1 and one program
+is enough.
+
+For any other form each linear program replaces the form by its tangent at the present coefficients,
+and lets them move only within a trust region, where the tangent is close to the form. The result is
+a local minimum.
+
+HiGHS solves programs to an absolute tolerance. Errors are therefore divided by the largest one, and
+the unknowns are the coordinates of an orthonormal basis of the tangent space, so that all numbers
+in a program are of the order of one, however small the errors are and whatever the monomials.
 """
 
-import functools
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import jax
 import numpy as np
-from jax import Array
 from scipy.optimize import linprog
 
-from fitting.form import Form
 from fitting.goal import Side
-from fitting.linearity import positive_of
-from integrals.reference import in_batches
+from fitting.solvers.residuals import Residuals, badness, largest_of, limits
 
-# The number of points at which values are evaluated at once, and at which derivatives are.
-_BATCH, _BATCH_OF_SLOPES = 4096, 512
-# The values of a bounded fit are kept this far from the ends of the codomain at the points, so that
-# they also stay within it elsewhere.
-_ROOM = 1e-3
-# When points and steps are chosen, the part of an error beyond what is allowed counts this many
-# times.
-_WRONG = 1e5
+# HiGHS's tolerances, the smallest first. The numbers of a program are of the order of one. HiGHS
+# does not solve every program to its smallest tolerance, and not by every method.
+_TOLERANCES = (1e-10, 1e-9, 1e-7)
+_METHODS = ("highs-ds", "highs-ipm")
+# A direction of the tangent space is left out if its singular value is below this part of the
+# largest: it does not change the values.
+_RANK = 1e-13
+# A program may lower a denominator, and what else must stay positive, to this part of itself.
+_LOWERED = 0.1
+# A program that promises to lower the largest error by less than this part of it shows that the
+# coefficients are optimal.
+_OPTIMAL = 1e-8
 
 
 @dataclass(frozen=True)
-class Residuals:
-    """The weighted errors that a fit minimises, as functions of the free coefficients (m,).
+class Lines:
+    """The rows of a linear program at the present coefficients.
 
-    * `values` returns the errors (n,) at all points.
-    * `slopes` takes the indices of some points too, and returns the derivatives (rows, m) there.
-    * `positive` and `positive_slopes` do the same for the number that must stay positive.
-    * `least` and `most` (n,) are the lowest and the highest error that is allowed at each point.
+    At a step δ, the errors of a quotient are (error + slopes·δ)/(1 + growth·δ), exactly. For any
+    other form growth is zero, and the errors are those of the tangent. What must stay positive is
+    multiplied by 1 + room·δ, at points of its own. The step is sought in the columns of `steps`.
+    `weight` (at most 1) multiplies the rows of errors whose slopes are large. `size` is the largest
+    error, by which the program divides.
     """
 
-    values: Callable[[np.ndarray], np.ndarray]
-    slopes: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    positive: Callable[[np.ndarray], np.ndarray]
-    positive_slopes: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    least: np.ndarray
-    most: np.ndarray
-
-
-def residuals(
-    form: Form,
-    points: np.ndarray,
-    exact: np.ndarray,
-    scale: np.ndarray,
-    free: np.ndarray,
-    fixed: np.ndarray,
-    bounded: bool = False,
-) -> Residuals:
-    """Return the weighted errors of a form as functions of its free coefficients.
-
-    `free` is a mask of the free coefficients; the others have their values in `fixed`. Both have an
-    element for each coefficient of the form. If `bounded`, values of the form are only allowed
-    between 0 and 1, with some distance from both.
-    """
-
-    def at(function, z, x, batch):
-        whole = fixed.copy()
-        whole[free] = z
-        return np.asarray(in_batches(functools.partial(function, form, whole), x, batch))
-
-    # The exact value may itself be an end: the distance is at most half of the exact value's own.
-    lower, upper = form.reference.codomain
-    low = lower + np.minimum(_ROOM, (exact - lower) / 2)
-    high = upper - np.minimum(_ROOM, (upper - exact) / 2)
-    least, most = (
-        (end - exact) * scale if bounded else np.full(len(exact), limit)
-        for end, limit in ((low, -np.inf), (high, np.inf))
-    )
-    return Residuals(
-        lambda z: (at(_values, z, points, _BATCH) - exact) * scale,
-        lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free] * scale[rows, None],
-        lambda z: at(_rooms, z, points, _BATCH),
-        lambda z, rows: at(_room_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free],
-        least,
-        most,
-    )
-
-
-def _value(form: Form, c: Array, point: Array) -> Array:
-    return form(c.reshape(form.coefficient_shape), *point)
-
-
-def _room(form: Form, c: Array, point: Array) -> Array:
-    return positive_of(form)(c.reshape(form.coefficient_shape), *point)
-
-
-def _at_points(function):
-    """Map a function of a form, coefficients and a point over points; compiled once for a form."""
-    return jax.jit(
-        lambda form, c, points: jax.vmap(lambda p: function(form, c, p))(points), static_argnums=0
-    )
-
-
-_values, _rooms = _at_points(_value), _at_points(_room)
-_slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_room, 1))
+    error: np.ndarray
+    slopes: np.ndarray
+    growth: np.ndarray
+    room: np.ndarray
+    steps: np.ndarray
+    weight: np.ndarray
+    size: float
 
 
 @dataclass(frozen=True)
@@ -113,27 +64,27 @@ class Minimax:
     * `programs`: the most linear programs that are solved.
     * `rows`, `rows_a_coefficient`: at first, a program has the `rows` points with the largest
       errors, and `rows_a_coefficient` more for each coefficient. Later programs keep these points,
-      and so may have up to three times as many.
-    * `trust`, `least_trust`: the first step may change a coefficient by the fraction `trust` of its
-      size. This trust region grows after a good step and shrinks after a bad one. The search ends
-      when it is smaller than `least_trust`.
+      and so may have up to three times as many. For a quotient the first points are evenly chosen.
+    * `trust`, `least_trust`: for a form that is no quotient, the first step may change a
+      coefficient by the fraction `trust` of its size. This trust region grows after a good step and
+      shrinks after a bad one. The search ends when it is smaller than `least_trust`.
     * `worthwhile`, `patience`: a program that lowers the error by less than the fraction
       `worthwhile` counts as idle, and one that does not lower it as half an idle one. The search
       ends after `patience` idle ones.
     * `over`: an error beyond what is allowed costs this many times as much as an allowed one in a
       linear program. It is not forbidden, because the start may have such errors.
-    * `floor`: the number that must stay positive is kept above this at the points.
+    * `corrections`: the most further programs of a step that correct it for curvature.
     """
 
-    programs: int = 30
+    programs: int = 100
     rows: int = 300
     rows_a_coefficient: int = 15
     trust: float = 0.3
     least_trust: float = 1e-6
-    worthwhile: float = 1e-4
-    patience: int = 4
+    worthwhile: float = 1e-5
+    patience: float = 4
     over: float = 100.0
-    floor: float = 1e-3
+    corrections: int = 3
 
     def __call__(self, problem: Residuals, start: np.ndarray, side: Side = "both") -> np.ndarray:
         """Return the coefficients (m,) with the least largest error that were found from `start`.
@@ -141,10 +92,59 @@ class Minimax:
         `side` is 'both', 'below' (every error ≤ 0 at the points) or 'above' (every error ≥ 0).
         """
         best = np.asarray(start, float)
-        if not len(best):
+        allowed = limits(problem, side)
+        least = badness(problem.values(best), *allowed).max(initial=0.0)
+        if not len(best) or not 0 < least < np.inf:
             return best
-        error, allowed = problem.values(best), limits(problem, side)
-        least, trust, idle = badness(error, *allowed).max(), self.trust, 0.0
+        solve = self._by_tangents if problem.parts is None else self._by_correction
+        return solve(problem, best, allowed)
+
+    def _by_correction(self, problem: Residuals, start: np.ndarray, allowed) -> np.ndarray:
+        """Minimise the largest error of a quotient: globally, at the points.
+
+        The programs have some of the points. Those where their result is worst are added, until the
+        result is not worse elsewhere.
+        """
+        z, best, least, idle = start, start, np.inf, 0.0
+        error = problem.values(z)
+        count = self.rows + self.rows_a_coefficient * len(z)
+        kept = np.zeros(len(error), bool)
+        kept[:: max(len(error) // count, 1)] = True
+        for _ in range(self.programs):
+            size = badness(error, *allowed)
+            known = size[kept].max()
+            if size.max() < least:
+                idle = 0.0 if size.max() < least * (1 - self.worthwhile) else idle + 1
+                best, least = z, size.max()
+            kept |= largest_of(size, count // 4) & (size > known)
+            rows = np.nonzero(kept)[0]
+            lines = quotient_lines(problem, z, error, rows, self.rows)
+            trial, promised = self._step(lines, z, rows, allowed, self.trust)
+            if promised < _OPTIMAL or idle >= self.patience:
+                break
+            tried, lowered = problem.values(trial), _lowered(problem, z, trial)
+            wrong = lowered < _LOWERED / 2
+            now = badness(tried, *allowed)
+            if np.any(wrong) or problem.positive(trial).min() <= 0:
+                added = kept | wrong & largest_of(-lowered, count // 4)
+                if np.array_equal(added, kept):
+                    break
+                kept = added
+            elif now[kept].max() < badness(error, *allowed)[kept].max() * (1 - 1e-10):
+                z, error = trial, tried
+            else:
+                break
+        return best
+
+    def _by_tangents(self, problem: Residuals, start: np.ndarray, allowed) -> np.ndarray:
+        """Minimise the largest error of any form: locally, with a trust region.
+
+        Where the errors at the end of a step are not those of the tangent, a second program has
+        the difference added to its errors, so that the step follows the curvature.
+        """
+        best, trust, idle = start, self.trust, 0.0
+        error = problem.values(best)
+        least = badness(error, *allowed).max()
         count = self.rows + self.rows_a_coefficient * len(best)
         kept = np.zeros(len(error), bool)
         for _ in range(self.programs):
@@ -152,11 +152,26 @@ class Minimax:
             if kept.sum() > 3 * count:
                 kept = largest_of(badness(error, *allowed), count)
             rows = np.nonzero(kept)[0]
-            trial = best + self._step(problem, best, error, rows, allowed, trust)
-            tried = problem.values(trial)
-            good = problem.positive(trial).min() > 0
-            value = badness(tried, *allowed).max() if good else np.inf
-            if value < least * (1 - 1e-9):
+            lines = _of_tangent(problem, best, error, rows, self.rows)
+            found, value, promised = None, np.inf, 0.0
+            for _ in range(1 + self.corrections):
+                trial, gain = self._step(lines, best, rows, allowed, trust)
+                promised = promised if found else gain
+                tried = problem.values(trial)
+                good = problem.positive(trial).min() > 0
+                size = badness(tried, *allowed).max() if good else np.inf
+                if found is None or size < value * (1 - 1e-10):
+                    found, value = (trial, tried), size
+                else:
+                    break
+                if not np.isfinite(size) or size <= least * (1 - 0.9 * gain):
+                    break
+                bent = tried[rows] - lines.slopes @ (trial - best)
+                lines = replace(lines, error=bent)
+            trial, tried = found or (best, error)
+            if promised < _OPTIMAL and trust >= self.trust:
+                break
+            if value < least * (1 - 1e-10):
                 idle = 0.0 if value < least * (1 - self.worthwhile) else idle + 1
                 best, error, least = trial, tried, value
                 trust = min(2 * trust, 3.0)
@@ -168,67 +183,146 @@ class Minimax:
                 break
         return best
 
-    def _step(self, problem, z, error, rows, allowed, trust) -> np.ndarray:
-        """Return the step (m,) that minimises the largest error of the tangent at points `rows`.
+    def _step(self, lines: Lines, z, rows, allowed, trust) -> tuple[np.ndarray, float]:
+        """Return coefficients (m,) that minimise the largest error at points `rows`.
 
-        It is zero if the linear program is not solved.
+        The second result is the part of the largest error that the program takes away; ∞ if the
+        program also lowers errors that are not allowed, or is not solved. If it is not solved, the
+        coefficients are `z`.
         """
-        slopes, values = problem.slopes(z, rows), error[rows]
-        room = problem.positive(z)
-        low = largest_of(-room, self.rows)
-        guard = problem.positive_slopes(z, np.nonzero(low)[0])
-        spare = room[low] - self.floor
-        held = np.any(guard != 0, axis=1)
-        guard, spare = guard[held], np.maximum(spare[held], 0.0)
-        unit = 1 / np.maximum(np.abs(slopes).max(axis=0), 1e-12)
-        radius = trust * np.maximum(np.abs(z), 0.05) / unit
-        # The program minimises t + over·s. The variable t bounds the size of every allowed error.
-        # The slack s bounds by how much errors exceed what is allowed; it costs so much that it is
-        # zero if it can be. If no positive error is allowed at a point, only s bounds it there, and
-        # so for negative errors.
-        least, most = (each[rows] for each in allowed)
+        size = lines.size
+        basis = orthonormal_steps(lines)
+        count = basis.shape[1]
+        if not count:
+            return z, 0.0
+        e, s, g = lines.error / size, lines.slopes @ basis / size, lines.growth @ basis
+        least, most = (each[rows] / size for each in allowed)
+        # The program minimises t + over·s. The variable t bounds what is gained of every allowed
+        # error. The slack s bounds by how much errors exceed what is allowed; it costs so much that
+        # it is zero if it can be. If no positive error is allowed at a point, only s bounds it
+        # there, and so for negative errors.
+        high, low = (np.where(np.isfinite(each), each, 0.0)[:, None] for each in (most, least))
         parts = [
-            _rows(slopes * unit, -values, most > 0, 0),
-            _rows(-slopes * unit, values, least < 0, 0),
-            _rows(slopes * unit, most - values, np.isfinite(most), 1),
-            _rows(-slopes * unit, values - least, np.isfinite(least), 1),
-            _rows(-guard * unit, spare, np.full(len(guard), True), None),
+            _rows(s - g, 1 - e, most > 0, 0, lines.weight),
+            _rows(-s - g, 1 + e, least < 0, 0, lines.weight),
+            _rows(s - high * g, most - e, np.isfinite(most), 1, lines.weight),
+            _rows(low * g - s, e - least, np.isfinite(least), 1, lines.weight),
+            _rows(-lines.room @ basis, np.full(len(lines.room), 1 - _LOWERED)),
         ]
+        quotient = len(lines.steps) > len(z)
+        if quotient:
+            # The scale of numerator and denominator, the last of the unknowns, stays positive.
+            parts.append(_rows(-basis[-1:], np.array([1 - _LOWERED])))
+        else:
+            radius = trust * np.maximum(np.abs(z), 0.05)
+            parts += [_rows(sign * basis / radius[:, None], 1 + 0 * z) for sign in (1, -1)]
         matrix, limit = (np.concatenate(each) for each in zip(*parts, strict=True))
-        bounds = [(-r, r) for r in radius] + [(0, None)] * 2
-        cost = np.concatenate([np.zeros(len(z)), [1.0, self.over]])
-        solved = linprog(cost, matrix, limit, bounds=bounds)
-        return solved.x[:-2] * unit if solved.success else np.zeros(len(z))
+        solved = solve_program(
+            np.concatenate([np.zeros(count), [1.0, self.over]]),
+            matrix,
+            limit,
+            [*[(None, None)] * count, (-1, None), (0, None)],
+        )
+        if solved is None:
+            return z, np.inf
+        step = basis @ solved[:-2]
+        over = np.maximum(np.maximum(e - most, least - e), 0).max()
+        moved = (z + step[:-1]) / (1 + step[-1]) if quotient else z + step
+        return moved, -solved[-2] if over == 0 else np.inf
 
 
-def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest error (n,) that both the problem and the side allow."""
-    return (
-        np.maximum(problem.least, 0) if side == "above" else problem.least,
-        np.minimum(problem.most, 0) if side == "below" else problem.most,
+def _of_tangent(problem: Residuals, z, error, rows, count: int) -> Lines:
+    """Linearise the errors, and what must stay positive at the `count` points with the least."""
+    room = problem.positive(z)
+    low = np.nonzero(largest_of(-room, count))[0]
+    slopes = problem.positive_slopes(z, low)
+    held = np.any(slopes != 0, axis=1)
+    return Lines(
+        error[rows],
+        problem.slopes(z, rows),
+        np.zeros((len(rows), len(z))),
+        slopes[held] / np.maximum(room[low][held], 1e-300)[:, None],
+        np.eye(len(z)),
+        np.ones(len(rows)),
+        np.abs(error[rows]).max(),
     )
 
 
-def badness(error: np.ndarray, least: np.ndarray, most: np.ndarray) -> np.ndarray:
-    """Return the size of each error (n,), much larger if it is not allowed; ∞ for NaN."""
-    bad = np.abs(error) + _WRONG * np.maximum(np.maximum(error - most, least - error), 0)
-    return np.where(np.isfinite(bad), bad, np.inf)
+def quotient_lines(problem: Residuals, z, error, rows, count: int) -> Lines:
+    """Return the rows for a quotient (a₀s + a·c)/(b₀s + b·c), whose unknowns are c and s.
 
-
-def largest_of(size: np.ndarray, count: int) -> np.ndarray:
-    """Return a mask (n,) of the `count` largest of sizes (n,)."""
-    chosen = np.zeros(len(size), bool)
-    count = min(count, len(size))
-    chosen[np.argpartition(-size, count - 1)[:count]] = True
-    return chosen
-
-
-def _rows(matrix, limit, some, column) -> tuple[np.ndarray, np.ndarray]:
-    """Return the inequalities matrix·z ≤ limit of some rows, for the linear program.
-
-    `column` 0 adds the variable t to the right side, 1 adds s, and None adds nothing.
+    The present s is 1. Numerator and denominator may be multiplied by any number: the steps keep
+    the mean of the denominators.
     """
-    raised = np.zeros((int(some.sum()), 2))
+    parts = problem.parts
+    assert parts is not None
+    below = parts.b0 + parts.b @ z
+    growth = np.column_stack([parts.b, parts.b0]) / below[:, None]
+    above = np.column_stack([parts.a, parts.a0])[rows] / below[rows, None]
+    slopes = problem.scale[rows, None] * (above - problem.exact[rows, None] * growth[rows])
+    near = largest_of(-np.abs(below), count)
+    near[rows] = True
+    weight = np.abs(below) / np.mean(np.abs(below[near]))
+    mean = np.mean(weight[near, None] * growth[near], axis=0)
+    # Coefficients may differ by many orders: their scale is that of their columns.
+    unit = 1 / np.maximum(np.abs(growth[near]).max(axis=0) + np.abs(slopes).max(axis=0), 1e-300)
+    steps = unit[:, None] * _across(mean * unit)
+    # Where a denominator is small, its row is divided by what it may grow to.
+    weight = np.minimum(weight, 1)
+    size = np.abs(error[rows]).max()
+    return Lines(error[rows], slopes, growth[rows], growth[near], steps, weight[rows], size)
+
+
+def _across(row: np.ndarray) -> np.ndarray:
+    """Return an orthonormal basis (m, m − 1) of what is orthogonal to a row (m,)."""
+    return np.linalg.svd(row[None, :])[2][1:].T
+
+
+def solve_program(cost, matrix, limit, bounds) -> np.ndarray | None:
+    """Return the z that minimises cost·z with matrix·z ≤ limit and bounds; None if HiGHS fails."""
+    for tolerance in _TOLERANCES:
+        options = {f"{kind}_feasibility_tolerance": tolerance for kind in ("primal", "dual")}
+        for method in _METHODS:
+            solved = linprog(cost, matrix, limit, bounds=bounds, method=method, options=options)
+            if solved.success:
+                return solved.x
+    return None
+
+
+def _lowered(problem: Residuals, old: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """Return new/old denominators (n,) of a quotient; ones for any other form.
+
+    A step is refused if one of them is not positive.
+    """
+    parts = problem.parts
+    if parts is None:
+        return np.ones(len(problem.exact))
+    return (parts.b0 + parts.b @ new) / (parts.b0 + parts.b @ old)
+
+
+def orthonormal_steps(lines: Lines) -> np.ndarray:
+    """Return steps (m, r) of which each changes the errors by their largest one, independently.
+
+    The rms change over the rows, times their weights, is `lines.size`.
+    """
+    slopes = lines.weight[:, None] * (lines.slopes @ lines.steps)
+    norms = np.linalg.norm(slopes, axis=0)
+    unit = 1 / np.where(norms > 0, norms, 1.0)
+    _, singular, right = np.linalg.svd(np.linalg.qr(slopes * unit, mode="r"))
+    kept = singular > _RANK * max(singular[0], 1e-300)
+    steps = unit[:, None] * right[: len(singular)][kept].T / singular[kept]
+    return lines.steps @ steps * (np.sqrt(len(slopes)) * lines.size)
+
+
+def _rows(matrix, limit, some=None, column=None, weight=None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the inequalities matrix·z ≤ limit of some rows, or all, for the linear program.
+
+    `column` 0 adds the variable t to the right side, 1 adds s, and None adds nothing. `weight`
+    multiplies the rows.
+    """
+    some = np.full(len(matrix), True) if some is None else some
+    raised = np.zeros((len(matrix), 2))
     if column is not None:
         raised[:, column] = -1
-    return np.hstack([matrix[some], raised]), limit[some]
+    factor = np.ones(len(matrix)) if weight is None else weight
+    return (np.hstack([matrix, raised]) * factor[:, None])[some], (limit * factor)[some]

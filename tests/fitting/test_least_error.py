@@ -7,7 +7,8 @@ import numpy as np
 from fitting import Goal
 from fitting.fit import fit
 from fitting.proofs.least_error import LEVELS, least_error
-from fitting.solvers.minimax import Minimax, residuals
+from fitting.solvers.minimax import Minimax
+from fitting.solvers.residuals import residuals
 from quantities import problem
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
 from tests.fitting.toys import toy_form

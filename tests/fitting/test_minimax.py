@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fitting.points.sample import sample_of
-from fitting.solvers.minimax import Minimax, badness, largest_of, limits, residuals
+from fitting.solvers.minimax import Minimax
+from fitting.solvers.residuals import badness, largest_of, limits, residuals
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
 
 NODES = np.linspace(0, 0.5, 501)[:, None]

@@ -1,0 +1,145 @@
+"""The weighted errors of a form at scattered points, as functions of its free coefficients."""
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import jax
+import numpy as np
+from jax import Array
+
+from fitting.form import Form
+from fitting.goal import Side
+from fitting.linearity import LinearParts, linear_parts, positive_of
+from integrals.reference import in_batches
+
+# The number of points at which values are evaluated at once, and at which derivatives are.
+_BATCH, _BATCH_OF_SLOPES = 4096, 512
+# The values of a bounded fit are kept this far from the ends of the codomain at the points, so that
+# they also stay within it elsewhere.
+_ROOM = 1e-3
+# When points and steps are chosen, the part of an error beyond what is allowed counts this many
+# times.
+_WRONG = 1e5
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """The weighted errors that a fit minimises, as functions of the free coefficients (m,).
+
+    * `values` returns the errors (n,) at all points.
+    * `slopes` takes the indices of some points too, and returns the derivatives (rows, m) there.
+    * `positive` and `positive_slopes` do the same for the number that must stay positive.
+    * `least` and `most` (n,) are the lowest and the highest error that is allowed at each point.
+    * `exact` and `scale` (n,) are the exact values and the weights of the errors.
+    * `parts`: the form as a quotient of linear functions of the free coefficients; None if it is no
+      such quotient.
+    """
+
+    values: Callable[[np.ndarray], np.ndarray]
+    slopes: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    positive: Callable[[np.ndarray], np.ndarray]
+    positive_slopes: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    least: np.ndarray
+    most: np.ndarray
+    exact: np.ndarray
+    scale: np.ndarray
+    parts: LinearParts | None = None
+
+    def is_good(self, z: np.ndarray) -> bool:
+        """Whether all errors are finite, and what must stay positive is so at all points."""
+        return bool(np.isfinite(self.values(z)).all() and self.positive(z).min(initial=1) > 0)
+
+
+def residuals(
+    form: Form,
+    points: np.ndarray,
+    exact: np.ndarray,
+    scale: np.ndarray,
+    free: np.ndarray,
+    fixed: np.ndarray,
+    bounded: bool = False,
+) -> Residuals:
+    """Return the weighted errors of a form as functions of its free coefficients.
+
+    `free` is a mask of the free coefficients; the others have their values in `fixed`. Both have an
+    element for each coefficient of the form. If `bounded`, values of the form are only allowed
+    between the ends of the codomain, with some distance from both.
+    """
+
+    def at(function, z, x, batch):
+        whole = fixed.copy()
+        whole[free] = z
+        return np.asarray(in_batches(functools.partial(function, form, whole), x, batch))
+
+    # The exact value may itself be an end: the distance is at most half of the exact value's own.
+    lower, upper = form.reference.codomain
+    low = lower + np.minimum(_ROOM, (exact - lower) / 2)
+    high = upper - np.minimum(_ROOM, (upper - exact) / 2)
+    least, most = (
+        (end - exact) * scale if bounded else np.full(len(exact), limit)
+        for end, limit in ((low, -np.inf), (high, np.inf))
+    )
+    return Residuals(
+        lambda z: (at(_values, z, points, _BATCH) - exact) * scale,
+        lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free] * scale[rows, None],
+        lambda z: at(_rooms, z, points, _BATCH),
+        lambda z, rows: at(_room_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free],
+        least,
+        most,
+        exact,
+        scale,
+        _free_parts(form, points, free, fixed),
+    )
+
+
+def _free_parts(form: Form, points, free, fixed) -> LinearParts | None:
+    """Return the linear parts for the free coefficients, with the others' values put in."""
+    parts = linear_parts(form, points)
+    if parts is None or free.all():
+        return parts
+    held = np.where(free, 0.0, fixed)
+    return LinearParts(
+        parts.a0 + parts.a @ held, parts.a[:, free], parts.b0 + parts.b @ held, parts.b[:, free]
+    )
+
+
+def _value(form: Form, c: Array, point: Array) -> Array:
+    return form(c.reshape(form.coefficient_shape), *point)
+
+
+def _room(form: Form, c: Array, point: Array) -> Array:
+    return positive_of(form)(c.reshape(form.coefficient_shape), *point)
+
+
+def _at_points(function):
+    """Map a function of a form, coefficients and a point over points; compiled once for a form."""
+    return jax.jit(
+        lambda form, c, points: jax.vmap(lambda p: function(form, c, p))(points), static_argnums=0
+    )
+
+
+_values, _rooms = _at_points(_value), _at_points(_room)
+_slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_room, 1))
+
+
+def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and the highest error (n,) that both the problem and the side allow."""
+    return (
+        np.maximum(problem.least, 0) if side == "above" else problem.least,
+        np.minimum(problem.most, 0) if side == "below" else problem.most,
+    )
+
+
+def badness(error: np.ndarray, least: np.ndarray, most: np.ndarray) -> np.ndarray:
+    """Return the size of each error (n,), much larger if it is not allowed; ∞ for NaN."""
+    bad = np.abs(error) + _WRONG * np.maximum(np.maximum(error - most, least - error), 0)
+    return np.where(np.isfinite(bad), bad, np.inf)
+
+
+def largest_of(size: np.ndarray, count: int) -> np.ndarray:
+    """Return a mask (n,) of the `count` largest of sizes (n,)."""
+    chosen = np.zeros(len(size), bool)
+    count = min(count, len(size))
+    chosen[np.argpartition(-size, count - 1)[:count]] = True
+    return chosen
