@@ -123,7 +123,7 @@ class Form:
 def plain_form(
     function: Callable[..., Any],
     reference: Reference,
-    start: Sequence[float] = (),
+    start: Sequence[float | int] = (),
     name: str | None = None,
     axes: tuple[Axis, ...] | None = None,
     sizes: Mapping[str, int] | None = None,

@@ -94,8 +94,9 @@ def table(
     values; `sigma`, that of the standard deviations; `hold_out` as for `samples`. An NPY file holds
     a structured array, or an array (n, columns) whose columns are named '0', '1', …; an NPZ file
     one array (n,) for each name. A relative path starts at the folder of the problem file that is
-    loaded, or of the script that runs, if the file is there; else at the working folder. Raises ValueError for a file that cannot be read, a
-    column that it does not have, and a number that is not finite, with its line.
+    loaded, or of the script that runs, if the file is there; else at the working folder. Raises
+    ValueError for a file that cannot be read, a column that it does not have, and a number that is
+    not finite, with its row.
     """
     path = _located(Path(file))
     content = _content(path)

@@ -94,7 +94,9 @@ class Axis:
         return np.where(fraction == 1, self.upper, np.minimum(value, self.upper))
 
 
-def restricted(axes: tuple[Axis, ...], **domains: tuple[float, float]) -> tuple[Axis, ...]:
+def restricted(
+    axes: tuple[Axis, ...], **domains: tuple[float | int, float | int]
+) -> tuple[Axis, ...]:
     """Return axes of which some, by name, have smaller domains: `restricted(axes, alpha=(0.1, 1))`.
 
     Raises ValueError for a name that no axis has, and for a domain that is not part of the axis's.

@@ -258,7 +258,7 @@ def make_reference(
     meaning: str = "",
     definition: str = "",
     sampling: Sampling | None = None,
-    codomain: tuple[float, float] = EVERYTHING,
+    codomain: tuple[float | int, float | int] = EVERYTHING,
 ) -> Reference:
     """Return the reference of a quantity with these axes. A sequence of sources is added up.
 

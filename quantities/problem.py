@@ -162,7 +162,7 @@ class Published:
     """
 
     form: str
-    coefficients: Sequence[float]
+    coefficients: Sequence[float | int]
     source: str
 
 

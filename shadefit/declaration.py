@@ -68,7 +68,7 @@ class Problem(Quantity):
         symbol: str = "",
         definition: str = "",
         meaning: str = "",
-        codomain: tuple[float, float] = EVERYTHING,
+        codomain: tuple[float | int, float | int] = EVERYTHING,
         weight: Callable[..., Any] | None = None,
         published: Sequence[Published] = (),
         shader: str = "",
@@ -109,9 +109,9 @@ class Problem(Quantity):
         self,
         function: Callable[..., Any] | None = None,
         *,
-        start: Sequence[float] = (),
+        start: Sequence[float | int] = (),
         name: str | None = None,
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
         sizes: Mapping[str, int] | None = None,
     ) -> Callable[..., Any]:
         """Add a plain function as a form; also a decorator. Returns the function.
@@ -134,7 +134,7 @@ class Problem(Quantity):
         denominator: Sequence,
         *,
         name: str = "rational",
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
         of: Callable[..., Any] | None = None,
         times: Callable[..., Any] | None = None,
         plus: Callable[..., Any] | None = None,
@@ -154,7 +154,7 @@ class Problem(Quantity):
         exponents: int | Sequence,
         *,
         name: str = "polynomial",
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
         of: Callable[..., Any] | None = None,
         times: Callable[..., Any] | None = None,
         plus: Callable[..., Any] | None = None,
@@ -168,7 +168,7 @@ class Problem(Quantity):
         degrees: int | Sequence[int],
         *,
         name: str = "chebyshev",
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
     ) -> Form:
         """Add a sum of Chebyshev polynomials, of a degree for each axis, and return it."""
         return self._shaped(chebyshev, degrees, name=name, domain=domain)
@@ -178,7 +178,7 @@ class Problem(Quantity):
         terms: int,
         *,
         name: str = "exponentials",
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
         constant: bool = False,
     ) -> Form:
         """Add Σ aₖ exp(−bₖ x), with a constant if wanted, and return it; for one axis."""
@@ -190,7 +190,7 @@ class Problem(Quantity):
         degree: int,
         *,
         name: str = "poles",
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
         of: Callable[..., Any] | None = None,
     ) -> Form:
         """Add a polynomial of a degree plus Σ aₖ/(bₖ + x), and return it; for one variable."""
@@ -198,10 +198,10 @@ class Problem(Quantity):
 
     def piecewise_linear(
         self,
-        knots: int | Sequence[float],
+        knots: int | Sequence[float | int],
         *,
         name: str = "piecewise",
-        domain: Mapping[str, tuple[float, float]] | None = None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None = None,
     ) -> Form:
         """Add a line between values at knots, a number of them or a list; for one axis."""
         return self._shaped(piecewise_linear, knots, name=name, domain=domain)
@@ -211,7 +211,7 @@ class Problem(Quantity):
         make: Callable[..., Form],
         *given: Any,
         name: str,
-        domain: Mapping[str, tuple[float, float]] | None,
+        domain: Mapping[str, tuple[float | int, float | int]] | None,
         **structure: Any,
     ) -> Form:
         axes = restricted(self.axes, **domain) if domain else None

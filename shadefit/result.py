@@ -124,7 +124,7 @@ class Result:
                 (name, f"{value:.9g}" + (f" ± {stderr[name]:.2g}" if stderr else ""))
                 for name, value in self.coefficients.items()
             ),
-            ("rms error", f"{errors.rms:.3e} against {against}, {errors.points:,} points"),
+            ("rms error", f"{errors.rms:.3e} against {against} ({errors.points:,} points)"),
             ("largest error", f"{errors.largest:.3e} at {place}"),
             *(("proven", text) for text in self.certificate),
             ("operations", str(self.operations)),

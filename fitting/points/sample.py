@@ -37,12 +37,20 @@ class Sample:
 
 
 def sample_of(form: Form, goal: Goal = LEAST_SQUARES, measure: str = "uniform") -> Sample:
-    """Return the sample on which a form is fitted; `measure` names a measure of the quantity."""
+    """Return the sample on which a form is fitted; `measure` names a measure of the quantity.
+
+    For least squares it has the points inside the domain only: those on faces are needed to find
+    the largest error, but would weigh too much in a sum of squares.
+    """
     reference = form.reference
     if reference.data is not None:
         return _sample_of_data(form, goal, measure)
     points = scattered_points(reference, form.axes, reference.sampling.fitted, SEED)
-    return _sample(points, _estimates(reference, form.axes), form, goal, measure)
+    estimates = _estimates(reference, form.axes)
+    if goal.norm == "l2":
+        inside = slice(2**reference.sampling.fitted)
+        points, estimates = points[inside], Estimate(*(each[inside] for each in estimates))
+    return _sample(points, estimates, form, goal, measure)
 
 
 def _sample_of_data(form: Form, goal: Goal, measure: str) -> Sample:

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -83,26 +84,31 @@ def fit(
     command += ["--hold-out", str(hold_out)]
     options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
     results: list[Result] = []
+    refused: list[str] = []
     with stages() as progress:
         task = progress.add_task("")
         for text, each in zip(form, owner.forms, strict=True):
             progress.update(task, description=f"{owner.name}: {text}")
             own = shlex.join([*command, "--form", text]) + options
-            results.append(fit_result(owner, each, goal, own))
-    several = len(results) > 1
-    files: list[Path | None] = [None] * len(results)
-    if out is not None:
-        stems = [f"{owner.name}-{each.fit.fitted.form.name}" for each in results]
-        files = [out / f"{stem if several else owner.name}.json" for stem in stems]
-        for each, file in zip(results, files, strict=True):
-            assert file is not None
+            try:
+                results.append(fit_result(owner, each, goal, own))
+            except ValueError as error:
+                refused.append(str(error))
+    if not results:
+        raise ValueError("; ".join(refused))
+    for reason in refused:
+        print(f"refused: {reason}", file=sys.stderr)
+    several = len(form) > 1
+    files = [
+        out and out / f"{owner.name}{f'-{each.fit.fitted.form.name}' if several else ''}.json"
+        for each in results
+    ]
+    for each, file in zip(results, files, strict=True):
+        if file is not None:
             write_whole(file, serialise(each.table))
     if json:
         records = [
-            {
-                "file": None if file is None else str(file),
-                **each.table.model_dump(by_alias=True, exclude_none=True),
-            }
+            {"file": file and str(file), **each.table.model_dump(by_alias=True, exclude_none=True)}
             for each, file in zip(results, files, strict=True)
         ]
         print_json({"tables": records})

@@ -1,6 +1,7 @@
 """`shadefit refit`: fit published forms, or those of best tables, to exact values; write tables."""
 
 import shlex
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -88,7 +89,8 @@ def run(
     """Refit tables, and write `out`/NAME.json for each. If any fit fails, nothing is written.
 
     If `out` is None, the packaged tables are replaced. `given` has the fields of the goal that
-    replace those of the table's own goal. `forms` names those to fit of users' quantities.
+    replace those of the table's own goal. `forms` names those to fit of users' quantities. If it is
+    ['all'], a form whose fit fails is left out, and the reason is printed.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -110,17 +112,30 @@ def run(
         require_writable(folder)
     with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
 
-        def make(each: "tuple[Problem, Form] | Entry") -> "Table":
+        def make(each: "tuple[Problem, Form] | Entry") -> "Table | str":
             task = progress.add_task(_name(each), total=None)
 
             def tell(stage: str) -> None:
                 progress.update(task, description=f"{_name(each)}: {stage}")
 
-            table = _table(each, grid, weight, given, tell)
+            try:
+                table = _table(each, grid, weight, given, tell)
+            except ValueError as error:
+                if ALL not in (forms or []):
+                    raise
+                tell("refused")
+                return str(error)
             tell("done")
             return table
 
-        tables = list(workers.map(make, chosen))
+        made = list(workers.map(make, chosen))
+    tables = [each for each in made if not isinstance(each, str)]
+    refused = [each for each in made if isinstance(each, str)]
+    if not tables:
+        raise ValueError("; ".join(refused))
+    for reason in refused:
+        print(f"refused: {reason}", file=sys.stderr)
+    folders = [f for f, each in zip(folders, made, strict=True) if not isinstance(each, str)]
     files = [folder / f"{table.name}.json" for folder, table in zip(folders, tables, strict=True)]
     for table, file in zip(tables, files, strict=True):
         write_whole(file, serialise(table))
