@@ -75,7 +75,7 @@ def test_a_file_beside_the_problem_file_is_found(file, monkeypatch):
 def test_a_wrong_csv_is_refused_in_one_line(tmp_path, text, message):
     path = tmp_path / "data.csv"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    with pytest.raises(ValueError, match="data.csv") as caught:
+    with pytest.raises(ValueError, match=r"data\.csv") as caught:
         table(path, ["a"], "b")
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -99,7 +99,7 @@ def hostile_npy() -> dict[str, bytes]:
 def test_a_hostile_npy_is_refused_in_one_line(tmp_path, case):
     path = tmp_path / "data.npy"
     path.write_bytes(hostile_npy()[case])
-    with pytest.raises(ValueError, match="data.npy is no NPY data") as caught:
+    with pytest.raises(ValueError, match=r"data\.npy is no NPY data") as caught:
         table(path, ["0"], "1")
     assert "\n" not in str(caught.value)
 
@@ -108,7 +108,7 @@ def test_a_hostile_npy_is_refused_in_one_line(tmp_path, case):
 def test_what_is_no_file_of_data_is_refused(tmp_path, name):
     (tmp_path / "data.txt").write_text(TEXT)
     (tmp_path / "folder.csv").mkdir()
-    with pytest.raises(ValueError, match="no such file|is no data: allowed are files .csv"):
+    with pytest.raises(ValueError, match=r"no such file|is no data: allowed are files \.csv"):
         table(tmp_path / name, ["NdotV"], "E")
 
 
@@ -150,5 +150,5 @@ def test_data_outside_the_domain_and_of_other_axes_are_refused(file):
     narrow = [Axis("mu", 0, 0.25), AXES[1]]
     with pytest.raises(ValueError, match=r"data.csv, row 3: mu = 0.3 is outside its domain"):
         make_reference(data, name="e", axes=narrow)
-    with pytest.raises(ValueError, match="data.csv has 2 columns of points: expected is one"):
+    with pytest.raises(ValueError, match=r"data\.csv has 2 columns of points: expected is one"):
         make_reference(data, name="e", axes=AXES[:1])

@@ -102,7 +102,7 @@ def test_a_weight_multiplies_errors():
 
     # ∫ w² x³ / ∫ w² x² over [0, 4]: 3 for w = 1 and 10/3 for w² = x.
     assert parabola() == pytest.approx(3, rel=2e-3)
-    assert parabola(lambda x: jnp.sqrt(x)) == pytest.approx(16 / 5, rel=2e-3)
+    assert parabola(jnp.sqrt) == pytest.approx(16 / 5, rel=2e-3)
 
 
 def test_arrays_of_coefficients_have_numbered_names():
