@@ -13,6 +13,7 @@ from coefficients.table import SCHEMA, Table, parse
 from fitting import Errors, Fit, Form
 from fitting.goal import LEAST_SQUARES
 from fitting.points.sample import Sample
+from fitting.uncertainty import uncertainty
 from integrals.reference import Axis, Reference
 from quantities.problem import Problem, Published
 
@@ -47,6 +48,7 @@ def table_of(
             **_known("least_error", fit.least_error),
             **_known("conservative_bound", fit.below),
         },
+        **_known("uncertainty", None if owner is None or owner.topic else _uncertainty(fit)),
         "provenance": {
             "command": command,
             "versions": {
@@ -89,6 +91,23 @@ def _about(owner: Problem) -> dict[str, Any]:
         "function": calling.name,
         "arguments": {each.axis: each.name for each in calling.arguments},
         **_known("codomain", list(reference.codomain) if finite else None),
+    }
+
+
+def _uncertainty(fit: Fit) -> dict[str, Any] | None:
+    """Return how well the points determine the coefficients; None if they are too few to tell."""
+    if not isinstance(fit.grid, Sample):
+        return None
+    try:
+        found = uncertainty(fit.fitted, fit.grid)
+    except ValueError:
+        return None
+    errors = found.standard_errors.tolist() if fit.goal == LEAST_SQUARES and found.unique else None
+    return {
+        **_known("standard_errors", errors),
+        **_known("condition", _finite(found.condition)),
+        "unique": found.unique,
+        "undetermined": list(found.undetermined),
     }
 
 

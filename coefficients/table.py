@@ -142,13 +142,15 @@ class Reference(_Part):
 class Uncertainty(_Part):
     """How well the points of a fit determine its coefficients.
 
-    `standard_errors` has one number for each flat coefficient; `condition` is that of the scaled
-    matrix of derivatives. If not `unique`, other coefficients fit as well.
+    `standard_errors` has one number for each flat coefficient; only a least squares fit has them.
+    `condition` is that of the scaled matrix of derivatives. If not `unique`, other coefficients fit
+    as well, and `undetermined` names those that can be changed.
     """
 
     standard_errors: Vector | None = None
     condition: Positive | None = None
     unique: bool
+    undetermined: Labels = []
 
 
 class ErrorRecord(_Part):

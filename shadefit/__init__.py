@@ -4,14 +4,17 @@ A program needs no other import than `import shadefit`. The names below are impo
 first used, so that the import itself does not wait for JAX. Turn float64 on before anything is
 evaluated: `jax.config.update("jax_enable_x64", True)`.
 
+* Your own quantity: `Problem(name, axes, reference)` with each `Axis`. The reference is a
+  `closed_form`, a `quadrature`, `hemisphere` or `sphere` integral, or `monte_carlo` samples, each
+  with a stated error; or data, from a `table` in a file or `samples` in arrays. `Published` has
+  constants in print, `powers` the exponents of a polynomial. `Problem.fit` returns a `Result`.
 * Exact values: `PS`, `G`, `Q`, `R` and `VELVET` are the references of the fuzz BRDF.
-* Exact values of one's own integral: `make_reference` makes a `Reference` over each `Axis` from a
-  `closed_form`, from a `quadrature`, `hemisphere` or `sphere` integral, or from `monte_carlo`
-  samples. `Sampling`, `Estimate` and `leg` are for a reference that is written out in full.
+  `make_reference` makes a `Reference` without a quantity. `Sampling`, `Estimate` and `leg` are for
+  a reference that is written out in full.
 * Fits: `fit` finds the coefficients of a `Form` for a `Goal`, and returns a `Fit`. `plain_form`
   makes a form of a plain function.
-* Quantities: `problem(name)`, `problems()` and `register(problem)`. A `Problem` is made with
-  `CallingConvention`, `Argument`, `PlotHints` and `AxisHint`.
+* Quantities: `problem(name)`, `problems()` and `register(problem)`. `CallingConvention`,
+  `Argument`, `PlotHints` and `AxisHint` say how one is called and drawn.
 * Tables: `load(name)` returns the fitted form of a table, `resolve(name)` an `Entry` with the table
   and its quantity. `table_of(fit, command)` makes a `Table` of a fit.
 * Code: `source_file` returns the shader code of an entry, and `exported_values` what it computes.

@@ -19,6 +19,7 @@ from coefficients.record import table_of
 from coefficients.table import Table, serialise
 from fitting import Errors, Fit, Form, Goal
 from fitting.fit import fit
+from fitting.second_opinion import SecondOpinion, second_opinion
 from quantities.problem import Problem
 
 if TYPE_CHECKING:
@@ -43,7 +44,10 @@ class Result:
 
     @property
     def stderr(self) -> dict[str, float] | None:
-        """The standard errors of the coefficients by their names; None if they are not unique."""
+        """The standard errors of the coefficients, by their names.
+
+        None if the coefficients are not unique, and unless squared errors were minimised.
+        """
         known = self.table.uncertainty
         if known is None or known.standard_errors is None:
             return None
@@ -97,6 +101,14 @@ class Result:
         write_whole(file, serialise(self.table))
         return file
 
+    def second_opinion(self) -> SecondOpinion:
+        """Refit with another solver (jaxopt) from other starts, and compare where it ends.
+
+        Raises ValueError for rounded coefficients, and for a form without coefficients.
+        """
+        with jax.enable_x64(True):
+            return second_opinion(self.fit.fitted.form, self.fit.goal, self.fit)
+
     def plot(self) -> "Figure":
         """Return a figure of the exact values, the form and its error, over one or two axes."""
         from shadefit.figures.result import draw_result  # noqa: PLC0415  Matplotlib is slow
@@ -130,8 +142,12 @@ class Result:
             ("operations", str(self.operations)),
             ("solver", self.fit.solver),
         ]
-        if self.table.uncertainty is not None and not self.table.uncertainty.unique:
-            rows.append(("warning", "the coefficients are not unique: others fit as well"))
+        if not self.fit.converged:
+            rows.append(("warning", "the solver did not converge: try other starts"))
+        known = self.table.uncertainty
+        if known is not None and not known.unique:
+            names = ", ".join(known.undetermined)
+            rows.append(("warning", f"not unique: other values of {names} fit as well"))
         return rows
 
     def __rich__(self) -> Grid:
