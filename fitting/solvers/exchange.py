@@ -152,7 +152,7 @@ class Exchange:
             if settled:
                 break
             sample = sample.extended(worst)
-        return best, sample, settled
+        return best, sample, bool(settled)
 
     def _worst_elsewhere(self, form: Form, found: np.ndarray, goal: Goal, measure: str, seed: int):
         """Return the points outside the sample with the largest errors, and the largest error.
