@@ -41,6 +41,7 @@ class Lut:
       values as parabolas; its u is (1½ + t (n − 3))/n.
     * `moved`: the number of texels at which the quantity has no value. They have the value at a
       point a tenth of a texel further in.
+    * `rounding`: the largest difference of a texel from the value that it was rounded from.
     """
 
     axes: tuple[Axis, ...]
@@ -51,6 +52,7 @@ class Lut:
     centres: Centres = "ends"
     weight_bits: int | None = WEIGHT_BITS
     moved: int = 0
+    rounding: float = 0.0
 
     @property
     def size(self) -> tuple[int, ...]:

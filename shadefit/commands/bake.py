@@ -216,6 +216,7 @@ def _report(source: str, path: Path, kind: str, lut: "Lut", errors: "Errors") ->
         "fetches": lut.fetches,
         "operations": lut.operations,
         "moved_texels": lut.moved,
+        "rounding": lut.rounding,
         "rms": errors.rms,
         "max": errors.largest,
         "where": errors.where,
@@ -264,6 +265,7 @@ def _note(report: dict[str, Any], place: Callable[[dict[str, float]], str]) -> s
     lines = [
         f"Texels over {axes}; centres: {report['centres']}. "
         f"{_filtered(report)} "
+        f"Rounding to {report['texel']} changes texels by at most {report['rounding']:.1e}. "
         f"Largest error at {place(report['where'])}."
     ]
     if report["span"] != [0.0, 1.0]:

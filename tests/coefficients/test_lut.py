@@ -180,6 +180,14 @@ def test_an_error_falls_with_the_square_of_the_size():
     assert coarse / fine == pytest.approx(4, rel=0.1)
 
 
+def test_the_rounding_of_texels_is_stated():
+    for texel, most in (("float16", 2.0**-12), ("unorm8", 0.5 / 255)):
+        lut = bake(wave, (X, Y), (9, 9), texel=texel)
+        exact = wave(lut.points).reshape(9, 9)
+        assert lut.rounding == np.abs(lut.texels - exact).max()
+        assert 0.5 * most < lut.rounding <= most
+
+
 def test_the_cost_of_a_lookup_is_counted():
     lut = bake(wave, (X, Y), (8, 4), texel="float16")
     assert (lut.size, lut.bytes, lut.fetches, lut.operations) == ((8, 4), 64, 1, 4)
