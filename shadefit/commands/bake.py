@@ -40,7 +40,7 @@ def bake(
     ] = None,
     filter: Annotated[
         Literal["linear", "cubic"],
-        typer.Option(help="linear: one fetch; cubic: Catmull–Rom, four fetches an argument."),
+        typer.Option(help="linear: one fetch; cubic: Catmull–Rom, 4, 16 or 64 fetches."),
     ] = "linear",
     centres: Annotated[
         Literal["ends", "half"],
