@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coefficients.lut.texels import Texel, encoded
+from coefficients.lut.texels import Texel, decoded, encoded
 from coefficients.lut.texture import (
     WEIGHT_BITS,
     Centres,
@@ -60,8 +60,11 @@ def bake(
         place = ", ".join(f"{axis.name} = {x:.6g}" for axis, x in zip(axes, point, strict=True))
         raise ValueError(f"no value at {place}: a LUT needs values on its whole domain")
     grid = values.reshape(inner)
-    stored, span = encoded(_with_border(grid) if border else grid, texel)
-    return Lut(axes, stored, texel, span, filter, centres, weight_bits, int(lost.sum()))
+    grid = _with_border(grid) if border else grid
+    stored, span = encoded(grid, texel)
+    rounding = float(np.abs(decoded(stored, span) - grid).max())
+    moved = int(lost.sum())
+    return Lut(axes, stored, texel, span, filter, centres, weight_bits, moved, rounding)
 
 
 def errors_of(lut: Lut, reference: Reference, axes: tuple[Axis, ...] | None = None) -> Errors:

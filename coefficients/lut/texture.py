@@ -23,6 +23,38 @@ _CUBIC_AXIS = 18
 _BATCH = 1 << 16
 
 
+@dataclass(frozen=True)
+class Coordinate:
+    """A texture coordinate u = factor · f(x − shift) + offset of an axis's value x.
+
+    `function` is the name of f: '' for none, 'log' or 'sqrt'.
+    """
+
+    factor: float
+    offset: float
+    function: str = ""
+    shift: float = 0.0
+
+    @property
+    def operations(self) -> int:
+        """The number of operations."""
+        parts = (self.factor != 1, self.offset != 0, self.function != "", self.shift != 0)
+        return sum(parts)
+
+    def at(self, values: np.ndarray) -> np.ndarray:
+        """Return the coordinates of values on the axis."""
+        known = {"": lambda x: x, "log": np.log, "sqrt": np.sqrt}
+        return self.factor * known[self.function](values - self.shift) + self.offset
+
+    def text(self, symbol: str) -> str:
+        """Write the formula for an axis that is called `symbol`."""
+        inner = symbol if self.shift == 0 else f"{symbol} {_signed(-self.shift)}"
+        if self.function:
+            inner = f"{self.function}({inner})"
+        scaled = inner if self.factor == 1 else f"{self.factor:.9g} {inner}"
+        return scaled if self.offset == 0 else f"{scaled} {_signed(self.offset)}"
+
+
 @dataclass(frozen=True, eq=False)
 class Lut:
     """A texture that stands for a quantity, with the convention by which it is sampled.
@@ -32,8 +64,8 @@ class Lut:
     * `texel`: their type. `span`: the values that the texels 0 and 1 stand for; (0, 1) for floats.
     * `centres`: 'ends' puts the centres of the first and last texels at the ends of an axis. A
       shader computes the texture coordinate u = (½ + t (n − 1))/n from the place t in [0, 1] on the
-      axis. 'half' takes u = t: the centres are half a texel from the ends, and the value is
-      constant beyond them. t follows the `scale` of the axis.
+      axis (`coordinates`). 'half' takes u = t: the centres are half a texel from the ends, and the
+      value is constant beyond them. t follows the `scale` of the axis.
     * `filter`: 'linear' is the filter of the hardware, with one fetch. Its coordinates are rounded
       to 1/2^`weight_bits` of a texel; None leaves them exact. 'cubic' is a Catmull–Rom spline,
       which a shader computes from four texels an axis, in full precision. Both clamp to the edge.
@@ -41,6 +73,7 @@ class Lut:
       values as parabolas; its u is (1½ + t (n − 3))/n.
     * `moved`: the number of texels at which the quantity has no value. They have the value at a
       point a tenth of a texel further in.
+    * `rounding`: the largest difference of a texel from the value that it was rounded from.
     """
 
     axes: tuple[Axis, ...]
@@ -51,6 +84,7 @@ class Lut:
     centres: Centres = "ends"
     weight_bits: int | None = WEIGHT_BITS
     moved: int = 0
+    rounding: float = 0.0
 
     @property
     def size(self) -> tuple[int, ...]:
@@ -78,7 +112,7 @@ class Lut:
 
         They are those of the texture coordinates, and of a shader's own filter.
         """
-        count = sum(_coordinate_operations(axis, self.centres) for axis in self.axes)
+        count = sum(each.operations for each in self.coordinates)
         if self.span != (0.0, 1.0):
             count += 2
         if self.filter == "cubic":
@@ -86,6 +120,12 @@ class Lut:
             sums = sum(4**k for k in range(len(self.axes)))
             count += _CUBIC_AXIS * len(self.axes) + 7 * sums
         return count
+
+    @property
+    def coordinates(self) -> "tuple[Coordinate, ...]":
+        """The texture coordinate of each axis, as a shader computes it."""
+        sides = zip(self.axes, self.size, strict=True)
+        return tuple(_coordinate(axis, n, self.border, self.centres) for axis, n in sides)
 
     @property
     def texels(self) -> np.ndarray:
@@ -161,13 +201,22 @@ def points_at(axes: Sequence[Axis], unit: np.ndarray) -> np.ndarray:
     return np.stack([axis.place(unit[:, k]) for k, axis in enumerate(axes)], axis=1)
 
 
-def _coordinate_operations(axis: Axis, centres: Centres) -> int:
-    """Count the operations of a texture coordinate: one product and one sum, unless it is x."""
-    curved = axis.scale != "linear"
-    if axis.scale == "logarithmic" or centres == "ends":
-        return 2 + curved + 2 * (axis.scale == "square" and axis.lower != 0)
-    scaled = (axis.lower != 0) + (axis.upper - axis.lower != 1)
-    return scaled + curved
+def _signed(number: float) -> str:
+    return f"{'-' if number < 0 else '+'} {abs(number):.9g}"
+
+
+def _coordinate(axis: Axis, count: int, border: int, centres: Centres) -> Coordinate:
+    # u = a t + b, where t is the place on the axis in [0, 1].
+    a, b = 1.0, 0.0
+    if centres == "ends":
+        a, b = (count - 1 - 2 * border) / count, (0.5 + border) / count
+    width = axis.upper - axis.lower
+    if axis.scale == "logarithmic":
+        factor = a / math.log(axis.upper / axis.lower)
+        return Coordinate(factor, b - factor * math.log(axis.lower), "log")
+    if axis.scale == "square":
+        return Coordinate(a / math.sqrt(width), b, "sqrt", axis.lower)
+    return Coordinate(a / width, b - a / width * axis.lower)
 
 
 def _linear(f: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -31,9 +31,9 @@ def exponentials(
     """Return the form Σ aₖ exp(−bₖ x), plus a constant c0 if `constant` is true.
 
     It has one axis, and 1 ≤ k ≤ `terms`. If `monotone`, the squares of all coefficients are taken
-    in their place: the form is then positive and falls with x, whatever the coefficients. A fit
-    starts from rates bₖ that are evenly spaced in the logarithm over the axis's width (over 1 if
-    that is infinite). Raises ValueError for more than one axis, and for less than one term.
+    in their place: whatever they are, the form is then never negative and never rises. A fit starts
+    from rates bₖ that are evenly spaced in the logarithm over the axis's width (over 1 if that is
+    infinite). Raises ValueError for more than one axis, and for less than one term.
     """
     axes = reference.axes if axes is None else axes
     axis = only_axis(name, axes)
@@ -50,6 +50,7 @@ def exponentials(
 
     def value(c, x) -> Any:
         at = len(first)
+        c = [c[k] * c[k] if monotone else c[k] for k in range(at + 2 * terms)]
         parts = [c[at + 2 * k] * jnp.exp(-c[at + 2 * k + 1] * x) for k in range(terms)]
         return functools.reduce(jnp.add, [*([c[0]] if constant else []), *parts])
 

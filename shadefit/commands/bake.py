@@ -40,7 +40,7 @@ def bake(
     ] = None,
     filter: Annotated[
         Literal["linear", "cubic"],
-        typer.Option(help="linear: one fetch; cubic: Catmull–Rom, four fetches an argument."),
+        typer.Option(help="linear: one fetch; cubic: Catmull–Rom, 4, 16 or 64 fetches."),
     ] = "linear",
     centres: Annotated[
         Literal["ends", "half"],
@@ -204,8 +204,14 @@ def _report(source: str, path: Path, kind: str, lut: "Lut", errors: "Errors") ->
         "source": source,
         "size": list(lut.size),
         "axes": [
-            {"name": a.name, "domain": [a.lower, a.upper], "unit": a.unit, "scale": a.scale}
-            for a in lut.axes
+            {
+                "name": axis.name,
+                "domain": [axis.lower, axis.upper],
+                "unit": axis.unit,
+                "scale": axis.scale,
+                "coordinate": each.text(axis.name),
+            }
+            for axis, each in zip(lut.axes, lut.coordinates, strict=True)
         ],
         "texel": lut.texel,
         "span": list(lut.span),
@@ -216,6 +222,7 @@ def _report(source: str, path: Path, kind: str, lut: "Lut", errors: "Errors") ->
         "fetches": lut.fetches,
         "operations": lut.operations,
         "moved_texels": lut.moved,
+        "rounding": lut.rounding,
         "rms": errors.rms,
         "max": errors.largest,
         "where": errors.where,
@@ -264,8 +271,12 @@ def _note(report: dict[str, Any], place: Callable[[dict[str, float]], str]) -> s
     lines = [
         f"Texels over {axes}; centres: {report['centres']}. "
         f"{_filtered(report)} "
+        f"Rounding to {report['texel']} changes texels by at most {report['rounding']:.1e}. "
         f"Largest error at {place(report['where'])}."
     ]
+    coordinates = (axis["coordinate"] for axis in report["axes"])
+    texts = zip("uvw", coordinates, strict=False)
+    lines.append(f"Texture coordinates: {', '.join(f'{u} = {text}' for u, text in texts)}.")
     if report["span"] != [0.0, 1.0]:
         low, high = report["span"]
         lines.append(f"A value is {low!r} + {high - low!r} times the texel.")

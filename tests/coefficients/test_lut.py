@@ -110,6 +110,34 @@ def test_fractions_are_the_inverse_of_places(axis):
     np.testing.assert_allclose(fraction_on(axis, axis.place(t)), t, atol=1e-14)
 
 
+@pytest.mark.parametrize("axis", [X, Y, LOG, SQUARE])
+@pytest.mark.parametrize("filtered", ["linear", "cubic"])
+@pytest.mark.parametrize("centres", ["ends", "half"])
+def test_texture_coordinates_of_centres_are_those_of_the_texels(axis, filtered, centres):
+    lut = bake(wave, (axis,), (8,), filtered, centres=centres)
+    (coordinate,) = lut.coordinates
+    # The centre of texel k is at (k + ½)/n.
+    inside = ~np.isnan(lut.points[:, 0])
+    expected = (np.arange(8) + 0.5) / 8
+    np.testing.assert_allclose(
+        coordinate.at(lut.points[inside, 0]), expected[inside], rtol=1e-13, atol=1e-15
+    )
+
+
+def test_texture_coordinates_are_written_and_counted():
+    texts = {
+        X: ("0.75 x + 0.125", 2),
+        Y: ("0.25 y + 0.375", 2),
+        LOG: ("0.162860431 log(d) + 0.875", 3),
+        SQUARE: ("0.612372436 sqrt(s - 0.5) + 0.125", 4),
+    }
+    for axis, (text, operations) in texts.items():
+        (coordinate,) = bake(wave, (axis,), (4,)).coordinates
+        assert (coordinate.text(axis.symbol), coordinate.operations) == (text, operations)
+    (bare,) = bake(wave, (X,), (4,), centres="half").coordinates
+    assert (bare.text("x"), bare.operations) == ("x", 0)
+
+
 def test_texels_follow_the_scale_of_the_axis():
     lut = bake(lambda p: np.log(p[:, 0]), (LOG,), (3,), weight_bits=None)
     np.testing.assert_allclose(lut.points[:, 0], [0.01, 0.1, 1], rtol=1e-14)
@@ -178,6 +206,14 @@ def test_an_error_falls_with_the_square_of_the_size():
     sizes = [bake(TOY.values, AXES, (n, n), weight_bits=None) for n in (9, 17)]
     coarse, fine = (errors_of(lut, TOY).largest for lut in sizes)
     assert coarse / fine == pytest.approx(4, rel=0.1)
+
+
+def test_the_rounding_of_texels_is_stated():
+    for texel, most in (("float16", 2.0**-12), ("unorm8", 0.5 / 255)):
+        lut = bake(wave, (X, Y), (9, 9), texel=texel)
+        exact = wave(lut.points).reshape(9, 9)
+        assert lut.rounding == np.abs(lut.texels - exact).max()
+        assert 0.5 * most < lut.rounding <= most
 
 
 def test_the_cost_of_a_lookup_is_counted():

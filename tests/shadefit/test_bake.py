@@ -49,9 +49,9 @@ def test_exact_values_are_baked_and_compared_with_the_tables(capsys, tmp_path):
     report = json.loads(out)
     texels = np.load(path)
     # By default the domain is that of the published table.
-    assert report["axes"] == [
-        {"name": "density", "domain": [0, 0.5], "unit": "1", "scale": "square"}
-    ]
+    (axis,) = report["axes"]
+    assert axis["coordinate"] == f"{32 / 33 * 2**0.5:.9g} sqrt(density) + {0.5 / 33:.9g}"
+    assert (axis["name"], axis["domain"], axis["scale"]) == ("density", [0, 0.5], "square")
     density = 0.5 * np.linspace(0, 1, 33) ** 2
     np.testing.assert_allclose(texels, Q.values(density[:, None]), rtol=1e-7)
     assert (report["file"], report["bytes"], report["fetches"]) == (str(path), 4 * 33, 1)
@@ -105,6 +105,7 @@ def test_the_text_says_what_a_shader_must_know(capsys, tmp_path):
     assert path.read_bytes()[:4] == b"DDS "
     assert "LUT 32, float16, linear" in out
     assert "density in [0, 2] (linear); centres: ends" in out
+    assert "Texture coordinates: u = 0.484375 density + 0.015625." in out
     assert "q, refitted" in out
     # The tables are made for a part of this domain.
     assert out.count("density in [0, 0.5]") >= 6
