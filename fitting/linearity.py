@@ -213,7 +213,7 @@ def derived_positive(form: Form) -> Callable[..., Array]:
         if not chosen:
             return jnp.ones(())
         inputs = [*(jnp.ravel(coefficients)[k] for k in range(size)), *map(jnp.asarray, point)]
-        return functools.reduce(jnp.minimum, interpret(wanted, inputs, _JAX, jnp.asarray))
+        return functools.reduce(jnp.minimum, interpret(wanted, inputs, JAX_OPERATIONS, jnp.asarray))
 
     return positive
 
@@ -259,4 +259,4 @@ _JAX_NAMES = {
     "atan": jnp.arctan,
     "atan2": jnp.arctan2,
 }
-_JAX = {name: _JAX_NAMES.get(name) or getattr(jnp, name) for name in OPERATIONS}
+JAX_OPERATIONS = {name: _JAX_NAMES.get(name) or getattr(jnp, name) for name in OPERATIONS}

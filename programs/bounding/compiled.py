@@ -7,13 +7,12 @@ compiled. While it runs, the processor rounds upward, so that all bounds are rou
 import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
+from programs.bounding.interval_code import FILES
 from programs.toolchains.process import ToolchainError, execute, missing_command, workspace
 
-_KERNEL = Path(__file__).parent / "kernel"
 COMPILER = "gcc"
 # No operation is moved across the change of the rounding mode, folded, fused or made approximate.
 _FLAGS = ("-std=gnu11", "-O2", "-shared", "-fPIC", "-frounding-math", "-ffp-contract=off")
@@ -61,9 +60,8 @@ def compile_kernel(
         raise ToolchainError(reason)
     options = {"INLINE_ALL": fast, "ROOTS_ARE_DEFINED": roots_are_defined}
     head = f"#define NVAR {sides}\n" + "".join(f"#define {k}\n" for k, on in options.items() if on)
-    names = ("jets.h", "elementary.h")
-    code = [head, *((_KERNEL / name).read_text("utf-8") for name in names), *parts]
-    code.append((_KERNEL / "search.h").read_text("utf-8"))
+    code = [head, *(file.read_text("utf-8") for file in FILES), *parts]
+    code.append((FILES[0].parent / "search.h").read_text("utf-8"))
     with workspace() as folder:
         (folder / "kernel.c").write_text("\n".join(code), encoding="utf-8")
         command = [COMPILER, *_FLAGS, *_FASTER, "kernel.c", "-o", "kernel.so", "-lm"]

@@ -1,5 +1,8 @@
 """A program as C code in interval arithmetic, for `kernel/jets.h`, by the project's own printer."""
 
+import re
+from pathlib import Path
+
 from programs.languages.c_family import C_WORDS
 from programs.languages.spelling import Language, Spelling
 from programs.operations import OPERATIONS
@@ -11,8 +14,16 @@ _CALLS = {
     )
     for name, operation in OPERATIONS.items()
 }
-# Names that the kernel's own code has
-_OWN = frozenset({"K", "V", "M", "iv", "jet", "truth", "boxes", "JET", "PAIR", "NVAR", *C_WORDS})
+# The files of the kernel that come before a printed program, and the names that they define
+FILES = tuple(Path(__file__).parent / "kernel" / name for name in ("jets.h", "elementary.h"))
+_DEFINITION = re.compile(r"^#define (\w+)|^(?:INLINE|static)[\w ]* (\w+)\(|^typedef .* (\w+)[ ;]", re.M)
+_OWN = frozenset(
+    name
+    for file in FILES
+    for found in _DEFINITION.findall(file.read_text("utf-8"))
+    for name in found
+    if name
+) | {"K", "V", "M"}
 
 # Values are jets and conditions truths. The boxes K, which note what is undefined, come first.
 INTERVAL_C = Language(
@@ -22,7 +33,7 @@ INTERVAL_C = Language(
     types={"double": "jet"},
     literals={"double": "{}"},
     functions={"double": _CALLS},
-    reserved=_OWN,
+    reserved=_OWN | C_WORDS,
     prologue={"double": ()},
     boolean="truth",
     array_argument="const {type} *{name}",

@@ -1,0 +1,177 @@
+"""The error of forms of P_s in interval arithmetic, for proofs of the largest error.
+
+The variables are α, tan(θf/2), tan(θu/2) and cos φ. In them the domain is a box, and sines and
+cosines are rational. The positive root λ of the cubic is one operation (`kernel/cubic_root.h`).
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from fitting.form import FittedForm
+from fitting.linearity import JAX_OPERATIONS
+from fitting.proofs.largest_error import ErrorCode, printed
+from programs.functions import Function, Parameter
+from programs.program import interpret
+from programs.tracing.tracer import trace
+from quantities.fuzz.ps_forms import LEAST
+
+_ROOT = Path(__file__).parent / "kernel" / "cubic_root.h"
+_GEOMETRY = ("alpha", "half_f", "half_u", "cos_phi")
+_SIZES = ("alpha2", "kappa", "a", "b", "c")
+_LIGHT = ("alpha", *_SIZES, "sigma2", "q", "p", "r", "m", "lam", "gap")
+
+# Values are cut to bounds that are proven for the whole domain: |a| ≤ 1, α² ≤ σ² ≤ 1, c ≤ r, p ≤ 1
+# (docs/range.md, docs/closed-form.md).
+_ENTRY = """
+static jet error_at(boxes *K, const jet *x) {
+    jet g[5], s[2], f[3], root, gap;
+    geometry(K, x[0], x[1], x[2], x[3], g);
+    g[2] = limited(g[2], -1, 1);
+    g[4] = limited(g[4], 0, 1);
+    sizes(K, g[0], g[1], g[2], g[3], g[4], s);
+    s[0] = limited(at_least_jet(s[0], g[0]), 0, 1);
+    s[1] = limited(at_least_jet(s[1], g[0]), 0, 1);
+    factors(K, g[0], g[1], g[2], g[3], g[4], s[0], s[1], f);
+    f[0] = limited(f[0], -1, 1);
+    f[1] = limited(at_least_jet(f[1], g[4]), 0, 2);
+    f[2] = limited(f[2], 0, 1);
+    cubic_root(K, f[0], f[1], f[2], g[0], &root, &gap);
+    return error(K, x[0], g[0], g[1], g[2], g[3], g[4], s[0], s[1], f[0], f[1], f[2], root, gap);
+}
+"""
+
+
+class _Angle:
+    """An angle of which only the cosine is known."""
+
+    def __init__(self, cosine: Array):
+        self.cosine = cosine
+
+
+def material_of(fitted: FittedForm) -> Callable[[Array, Array], tuple[Array, ...]]:
+    """Return the first stage of a form as a function of α and cos θf."""
+    parameters = (Parameter("alpha", (0.0, 1.0)), Parameter("theta_f", (0.0, 1.6)))
+    count = len(fitted.first(1.0, 0.0))
+    program = trace(
+        Function("material", "", parameters, count, "m", lambda a, t: fitted.form.first(fitted.constants, a, t))
+    )
+
+    def cosine(x):
+        return x.cosine if isinstance(x, _Angle) else jnp.cos(x)
+
+    def material(alpha: Array, cos_nt: Array) -> tuple[Array, ...]:
+        table = {**JAX_OPERATIONS, "cos": cosine}
+        return interpret(program, [alpha, _Angle(cos_nt)], table, jnp.asarray)
+
+    return material
+
+
+def _geometry(alpha, half_f, half_u, cos_phi):
+    near_f, near_u = 2 / (1 + half_f * half_f), 2 / (1 + half_u * half_u)
+    b, c = near_f - 1, near_u - 1
+    a = (half_f * near_f) * (half_u * near_u) * cos_phi + b * c
+    return alpha * alpha, (1 - alpha) * (1 + alpha), a, b, c
+
+
+def _sizes(alpha2, kappa, a, b, c):
+    return 1 - kappa * (a * a), 1 - kappa * (b * b)
+
+
+def _factors(alpha2, kappa, a, b, c, sigma2, q):
+    s, t = jnp.sqrt(sigma2 * q), kappa * (a * b)
+    return s - t, s + t, alpha2 * c
+
+
+def _complement(c, sigma2, r, m, root, gap):
+    """Return 1 − P_s = √((λ + c)(λ + m/σ²)) / (λ + r + (λ − p) + m + m/λ²)."""
+    root2 = root * root
+    return jnp.sqrt((root + c) * (root + m / sigma2)) / (root + r + gap + m + m / root2)
+
+
+def plain_error(fitted: FittedForm) -> Callable[..., Array]:
+    """Return P̃_s − P_s as a function of the numbers in `_LIGHT`."""
+    material, along = material_of(fitted), fitted.form.stages[1].call
+
+    def error(alpha, alpha2, kappa, a, b, c, sigma2, q, p, r, m, root, gap):
+        return along(material(alpha, b), c, a) - 1 + _complement(c, sigma2, r, m, root, gap)
+
+    return error
+
+
+def factored_error(fitted: FittedForm) -> Callable[..., Array]:
+    """Return P̃_s − P_s of a form with the cubic, as a product that cancels nothing.
+
+    With f the cubic, Q(x) = f(x)/(x − λ) and H(x) = x √((x + c)(x + m/σ²)) / f′(x), P_s is
+    1 − H(λ). The first λ̃ of the form has the distance d = f(λ̃)/Q(λ̃) from λ, and a Newton step
+    changes d to d² (2λ̃ + λ + A)/f′(λ̃). The error is −d (H(λ̃) − H(λ))/(λ̃ − λ), and this quotient
+    is written out. The lower limits of the form, `LEAST`, are left out: they must have no effect,
+    which is tested by the logarithm of what is above them.
+    """
+    steps, degree = fitted.form.shape["steps"], fitted.form.shape["degree"]
+    material = material_of(fitted)
+
+    def error(alpha, alpha2, kappa, a, b, c, sigma2, q, p, r, m, root, gap):
+        # notation: x = λ̃, total = λ + A = (λ − p) + r + m, as a sum of what is not negative
+        s, t = (p + r) / 2, (r - p) / 2
+        total = gap + r + m
+        frozen = s + (jnp.maximum(s, t) if degree < 0 else _guess(material(alpha, b), s, t, c))
+        part = m / (frozen + m)
+        half = p * (0.5 - 0.5 * part)
+        x = jnp.minimum(
+            jnp.maximum(half + jnp.sqrt(half * half + part), jnp.maximum(p, 0.0)), 1.0
+        )
+        rate = m * ((1 - x) * (1 + x)) / frozen
+        # λ̃ + r − g, which is λ̃ − max(p, 0) without coefficients
+        apart = x + r - frozen if degree >= 0 else jnp.minimum(x, rate / x)
+        d = rate * apart / (x * (x + total) + m / root)
+        x = root + d
+        for _ in range(steps):
+            d = d * d * (2 * x + total) / (x * (x + total) + m / root + d * (2 * x + total))
+            x = root + d
+        slope = x * (x + total) + m / root + d * (2 * x + total)
+        at_root = gap * (root + r) + root * (root + r) + root * gap + 2 * m * root
+        ratio = m / sigma2
+        above, above_root = jnp.sqrt((x + c) * (x + ratio)), jnp.sqrt((root + c) * (root + ratio))
+        divided = (x + root + c + ratio) / (above + above_root)
+        fraction = root * above_root / at_root
+        quotient = (above + root * divided - fraction * (3 * (x + root) + 2 * (m + r - p))) / slope
+        return -d * quotient
+
+    return error
+
+
+def _guess(material, s, t, c):
+    return jnp.sqrt(s * s + t * t + material[5] * c)
+
+
+def error_code(fitted: FittedForm) -> ErrorCode:
+    """Return the code of P̃_s − P_s for a form of two stages of a family of P_s."""
+    shape = fitted.form.shape or {}
+    error = factored_error(fitted) if "steps" in shape else plain_error(fitted)
+    parts = (
+        printed("geometry", _GEOMETRY, _geometry, 5),
+        printed("sizes", _SIZES, _sizes, 2),
+        printed("factors", (*_SIZES, "sigma2", "q"), _factors, 3),
+        _ROOT.read_text("utf-8"),
+        printed("error", _LIGHT, error),
+        _ENTRY,
+    )
+    axes = fitted.axes
+    box = np.array([[axes[0].lower, axes[0].upper], [0.0, 1.0], [0.0, 1.0], [-1.0, 1.0]])
+    return ErrorCode(parts, box, _to_axes, _from_axes, roots_are_defined=True, long=True)
+
+
+def _to_axes(points: np.ndarray) -> np.ndarray:
+    alpha, half_f, half_u, cos_phi = points.T
+    return np.stack(
+        [alpha, 2 * np.arctan(half_f), 2 * np.arctan(half_u), np.arccos(cos_phi)], axis=1
+    )
+
+
+def _from_axes(points: np.ndarray) -> np.ndarray:
+    alpha, theta_f, theta_u, phi = points.T
+    return np.stack([alpha, np.tan(theta_f / 2), np.tan(theta_u / 2), np.cos(phi)], axis=1)
