@@ -1,21 +1,26 @@
-"""The largest error of a form as a theorem: an upper bound on the whole domain, and a point near it.
+"""The largest error of a form as a theorem: a bound on the whole domain, and a point near it.
 
 The difference of a form and the exact value is one program, whose bounds are found by branch and
 bound (`programs/bounding/largest.py`). This needs a closed form of the exact value.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fitting.form import FittedForm
+from fitting.form import FittedForm, traced
 from integrals.reference import Axis, box_of
-from programs.bounding.compiled import Kernel, compile_kernel
+from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
+from programs.bounding.denominators import prove_no_pole
 from programs.bounding.interval_code import INTERVAL_C
-from programs.bounding.largest import LargestValue, Standing, bound_largest
+from programs.bounding.largest import LargestValue, Report, bound_largest, bound_largest_slowly
 from programs.functions import Function, Parameter
 from programs.printing.printer import write_source
+from programs.program import Program
+
+# A positive bound of denominators that need not be improved
+ENOUGH = 1e-6
 
 
 def _unchanged(points: np.ndarray) -> np.ndarray:
@@ -33,6 +38,7 @@ class ErrorCode:
     * `inexact`: a bound of the difference between the closed form in the code, in exact arithmetic,
       and the exact value. It contains what its constants and series leave out.
     * `roots_are_defined`: whether it is proven that no radicand is negative.
+    * `program`: the same as a program, if it is one.
     * `long`: whether the search is so long that the code should be compiled for speed.
     """
 
@@ -43,6 +49,7 @@ class ErrorCode:
     inexact: float = 0.0
     roots_are_defined: bool = False
     long: bool = False
+    program: Program | None = None
 
     def kernel(self) -> Kernel:
         """Compile the search."""
@@ -80,12 +87,14 @@ def difference_code(
     """
     axes = fitted.axes if axes is None else axes
     names = tuple(f"x{k}" for k in range(len(axes)))
-    code = printed(
-        "difference", names, lambda *point: fitted.form(fitted.constants, *point) - exact(*point)
-    )
+
+    def difference(*point):
+        return fitted.form(fitted.constants, *point) - exact(*point)
+
+    code, program = printed("difference", names, difference), traced(fitted, difference, axes)
     arguments = ", ".join(f"x[{k}]" for k in range(len(axes)))
     entry = f"static jet error_at(boxes *K, const jet *x) {{ return difference(K, {arguments}); }}"
-    return ErrorCode((code, entry), box_of(axes), inexact=inexact)
+    return ErrorCode((code, entry), box_of(axes), inexact=inexact, program=program)
 
 
 def certify_largest_error(
@@ -93,19 +102,46 @@ def certify_largest_error(
     code: ErrorCode,
     ratio: float,
     seeds: np.ndarray,
+    *,
+    claim: float | None = None,
     threads: int = 2,
-    progress: Callable[[Standing], None] = lambda _: None,
+    progress: Report = lambda _: None,
 ) -> LargestError:
     """Bound the largest error of a form from both sides, the bounds about `ratio` apart.
 
     Arguments: `code` of the error; `ratio`, above 1; `seeds` (n, axes), points where the error may
-    be large; `threads`; `progress`, which is called several times a second. Raises ValueError for
-    another ratio, and ToolchainError without a compiler.
+    be large; `claim`, a bound to prove or to refute instead; `threads`; `progress`, which is called
+    several times a second. Without a compiler, a slow search in Python tries the same if the code
+    has a `program`. Raises ValueError for another ratio, and without compiler and program.
     """
-    kernel, starts = code.kernel(), code.from_axes(seeds)
-    found = bound_largest(
-        kernel, code.box, ratio, seeds=starts, threads=threads, progress=progress
-    )
+    starts = code.from_axes(seeds)
+    reason = compiler_missing()
+    if reason is not None:
+        if code.program is None or claim is not None:
+            raise ValueError(f"the proof needs a C compiler: {reason}")
+        slow = bound_largest_slowly(code.program, code.box, ratio, seeds=starts)
+        return _of_form(fitted, code, slow)
+    kernel = code.kernel()
+    if claim is not None:
+        claim -= code.inexact
+
+    def search(kernel: Kernel) -> LargestValue:
+        return bound_largest(
+            kernel,
+            code.box,
+            ratio,
+            claim=claim,
+            seeds=starts,
+            threads=threads,
+            progress=progress,
+        )
+
+    found = search(kernel)
+    refuted = claim is not None and found.lower > claim
+    gave_up = found.upper is None and not refuted and code.program is not None
+    # Rounding may make the bounds of a radicand negative that is zero on the boundary.
+    if gave_up and prove_no_pole(code.program, code.box, ENOUGH).holds:
+        found = search(replace(code, roots_are_defined=True).kernel())
     return _of_form(fitted, code, found)
 
 

@@ -100,6 +100,9 @@ def search_structure(sides: int) -> type[ctypes.Structure]:
             ("volume", number),
             ("boxes", count),
             ("status", count),
+            ("leaves", ctypes.POINTER(number)),
+            ("leaf_count", count),
+            ("leaf_capacity", count),
         )
 
     return Search

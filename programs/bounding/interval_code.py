@@ -16,7 +16,9 @@ _CALLS = {
 }
 # The files of the kernel that come before a printed program, and the names that they define
 FILES = tuple(Path(__file__).parent / "kernel" / name for name in ("jets.h", "elementary.h"))
-_DEFINITION = re.compile(r"^#define (\w+)|^(?:INLINE|static)[\w ]* (\w+)\(|^typedef .* (\w+)[ ;]", re.M)
+_DEFINITION = re.compile(
+    r"^#define (\w+)|^(?:INLINE|static)[\w ]* (\w+)\(|^typedef .* (\w+)[ ;]", re.M
+)
 _OWN = frozenset(
     name
     for file in FILES

@@ -4,13 +4,16 @@
 #include <fenv.h>
 
 /* What a call begins with and leaves behind. `stack` holds `depth` boxes of 2 NVAR numbers, lower
-   ends first. The level is `ratio` times the largest `lower` that was found, at least `level`. */
+   ends first. The level is `ratio` times the largest `lower` that was found, at least `level`. The
+   first `leaf_capacity` boxes that are proven are copied to `leaves`. */
 typedef struct {
     double *stack;
     long depth, capacity, budget;
     double ratio, level, lower, at[NVAR], whole[NVAR];
     double reached, volume;
     long boxes, status;
+    double *leaves;
+    long leaf_count, leaf_capacity;
 } search;
 
 enum { FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING };
@@ -137,6 +140,9 @@ static void run(search *s) {
                 double volume = 1;
                 for (int k = 0; k < NVAR; ++k) volume *= (box[NVAR + k] - box[k]) / s->whole[k];
                 s->volume += volume;
+                if (s->leaf_count < s->leaf_capacity)
+                    __builtin_memcpy(
+                        s->leaves + 2 * NVAR * s->leaf_count++, box, sizeof(double) * 2 * NVAR);
                 continue;
             }
             int side = widest(s, &K, &e, box, i);
