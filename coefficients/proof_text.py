@@ -59,6 +59,8 @@ def proof_text(certificates: Certificates | None) -> list[str]:
         found.append(f"values in [{low:g}, {high:g}]")
     if (certificates.conservative_bound or 0) > 0:
         found.append("none above the exact value")
+    if certificates.largest_error is not None:
+        found.append(f"errors ≤ {_above(certificates.largest_error.upper, 4)}")
     if certificates.least_error is not None:
         least = _below(certificates.least_error, 3)
         found.append(f"no coefficients have a largest error below {least}")
@@ -69,3 +71,12 @@ def _below(value: float, digits: int) -> str:
     """Write a positive number with some digits, rounded down."""
     unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
     return f"{math.floor(value / unit) * unit:.{digits}g}"
+
+
+def _above(value: float, digits: int) -> str:
+    """Write a number that is not negative with some digits, rounded up."""
+    if value == 0:
+        return "0"
+    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    text = f"{math.ceil(value / unit) * unit:.{digits}g}"
+    return text if float(text) >= value else f"{(math.ceil(value / unit) + 1) * unit:.{digits}g}"

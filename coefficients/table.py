@@ -169,6 +169,25 @@ class ErrorRecords(_Part):
     off_grid: ErrorRecord
 
 
+class LargestErrorRecord(_Part):
+    """The largest absolute error on the whole domain, as a theorem (docs/certify.md).
+
+    No error is above `upper`. At the point `at` it is at least `lower`. `boxes` is the number of
+    boxes of the proof.
+    """
+
+    lower: Annotated[Number, Field(ge=0)]
+    at: Annotated[dict[Text, Number], _CLOSED]
+    upper: Annotated[Number, Field(ge=0)]
+    boxes: Annotated[int, Field(ge=1)]
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        if not self.lower <= self.upper:
+            raise ValueError(f"the largest error is at least {self.lower} and at most {self.upper}")
+        return self
+
+
 class Certificates(_Part):
     """What is proven on the whole domain, by branch and bound over a number of boxes.
 
@@ -177,6 +196,7 @@ class Certificates(_Part):
     the proof; without a range this is not proven. No coefficients of the form have a largest error
     below `least_error`. If `conservative_bound` is positive, no value is above the exact one: it is
     a lower bound of a quantity that would be negative there (quantities/fuzz/velvet_form.py).
+    Without `largest_error`, the largest error is measured only.
     """
 
     denominator_bound: Positive | None = None
@@ -184,6 +204,7 @@ class Certificates(_Part):
     range: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
     least_error: Positive | None = None
     conservative_bound: Number | None = None
+    largest_error: LargestErrorRecord | None = None
 
     @model_validator(mode="after")
     def _ordered(self):

@@ -223,9 +223,11 @@ def traced(
 ) -> Program:
     """Trace `call`, a function of a fitted form, as a program whose inputs are `axes`.
 
-    `results` is the length of the tuple that `call` returns; None if it returns a scalar.
+    `results` is the length of the tuple that `call` returns; None if it returns a scalar. The
+    program is for proofs: it keeps steps that may be undefined.
     """
     parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
     reference = fitted.reference
     summary = f"{reference.symbol} by {fitted.form.equation}"
-    return trace(Function(reference.name, summary, parameters, results, "value", call))
+    function = Function(reference.name, summary, parameters, results, "value", call)
+    return trace(function, keep_undefined=True)

@@ -8,11 +8,16 @@ from typing import Any
 import numpy as np
 from jax import Array
 
-from fitting.form import Form
+from fitting.form import FittedForm, Form
+from fitting.points.scattered import scattered_points
+from fitting.proofs.largest_error import ErrorCode, difference_code
 from integrals.reference import Axis, Reference
 from programs.functions import Function
 from quantities.calling_convention import CallingConvention
 from quantities.family import Family
+
+# The stated error of a closed form is looked at in 2^_PROBES points and half as many more.
+_PROBES = 8
 
 
 @dataclass(frozen=True)
@@ -180,6 +185,8 @@ class Problem:
       the lower ends of their domains, such as {"alpha": 0.15}. None: `forms`.
     * `closed_form`: the exact value in float64, as a function of the axes that can be traced; the
       report's explorer evaluates it. `exact_code`: the same for shaders.
+    * `error_code`: returns the code with which the largest error of a form is proven, or None if
+      there is none for this form. None: the difference from `closed_form`.
     * `plot`: how the quantity is drawn; None stands for default hints.
     * `topic`: the folder below `coefficients/tables` that has the tables of the quantity; a user's
       quantity has none.
@@ -194,6 +201,7 @@ class Problem:
     families: Mapping[str, Family] = field(default_factory=dict)
     candidates: Callable[[Mapping[str, float]], Iterator[Form]] | None = None
     closed_form: Callable[..., Array] | None = None
+    error_code: Callable[[FittedForm], ErrorCode | None] | None = None
     exact_code: ExactCode | None = None
     plot: PlotHints | None = None
     topic: str = ""
@@ -237,6 +245,19 @@ class Problem:
         if self.candidates is not None:
             return self.candidates(lower)
         return iter(self.forms)
+
+    def code_of_error(self, fitted: FittedForm) -> ErrorCode | None:
+        """Return the code with which the largest error of a form is proven; None without any.
+
+        Raises ValueError if the closed form has an operation that is not known.
+        """
+        if self.error_code is not None:
+            return self.error_code(fitted)
+        if self.closed_form is None:
+            return None
+        points = scattered_points(self.reference, fitted.axes, _PROBES, _PROBES)
+        stated = float(np.max(self.reference.estimates(points).error))
+        return difference_code(fitted, self.closed_form, stated)
 
     def has_form(self, name: str, shape: dict[str, Any] | None) -> bool:
         """Return whether there is a form, or for a shape a family, with this name."""

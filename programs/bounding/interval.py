@@ -4,21 +4,14 @@ An `Enclosure` holds, for many boxes at once, an interval that contains all valu
 on the box, and one interval for each partial derivative. Every bound is rounded outwards.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from programs.bounding import arithmetic as iv
+from programs.bounding.arithmetic import Interval
 from programs.program import Program, interpret
-
-# NumPy's elementary functions have errors of at most 4 units in the last place.
-_ELEMENTARY_ULPS = 4
-
-
-class Interval(NamedTuple):
-    """Lower and upper bounds, one of each for every box."""
-
-    lower: np.ndarray
-    upper: np.ndarray
 
 
 class Enclosure(NamedTuple):
@@ -45,18 +38,24 @@ def enclose_with_slopes(program: Program, lower: np.ndarray, upper: np.ndarray) 
     with np.errstate(all="ignore"):
         natural = interpret(program, inputs, _OPERATIONS, lambda c: _constant(c, lower))
         central = interpret(program, centre, _VALUES, lambda c: _number(c, lower))
-        offsets = [_sub(whole.value, x) for whole, x in zip(inputs, centre, strict=True)]
+        offsets = [iv.subtract(whole.value, x) for whole, x in zip(inputs, centre, strict=True)]
         return [
             Enclosure(_mean_value(n, c, offsets), n.gradient)
             for n, c in zip(natural, central, strict=True)
         ]
 
 
+def image_of(operation: str, operands: list[Interval | None]) -> Interval | None:
+    """Bound the result of one operation on intervals; None for a condition, which has no bounds."""
+    with np.errstate(all="ignore"):
+        return _VALUES[operation](*operands)
+
+
 def _mean_value(natural: Enclosure, central: Interval, offsets: list[Interval]) -> Interval:
     total = central
     for k, offset in enumerate(offsets):
         slope = Interval(natural.gradient.lower[k], natural.gradient.upper[k])
-        total = _add(total, _mul(slope, offset))
+        total = iv.add(total, iv.multiply(slope, offset))
     lower, upper = natural.value
     # An unbounded slope gives 0·∞ = NaN, which fmax and fmin ignore: the natural bounds remain.
     return Interval(np.fmax(lower, total.lower), np.fmin(upper, total.upper))
@@ -78,91 +77,16 @@ def _constant(value: float, like: np.ndarray) -> Enclosure:
     return Enclosure(_number(value, like), Interval(slope, slope))
 
 
-def _outward(lower: np.ndarray, upper: np.ndarray, ulps: int = 1) -> Interval:
-    for _ in range(ulps):
-        lower, upper = np.nextafter(lower, -np.inf), np.nextafter(upper, np.inf)
-    return Interval(lower, upper)
-
-
-def _add(a: Interval, b: Interval) -> Interval:
-    return _outward(a.lower + b.lower, a.upper + b.upper)
-
-
-def _sub(a: Interval, b: Interval) -> Interval:
-    return _outward(a.lower - b.upper, a.upper - b.lower)
-
-
-def _mul(a: Interval, b: Interval) -> Interval:
-    products = (a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper)
-    return _outward(np.minimum.reduce(products), np.maximum.reduce(products))
-
-
-def _square(a: Interval) -> Interval:
-    low, high = np.abs(a.lower), np.abs(a.upper)
-    least = np.where((a.lower <= 0) & (a.upper >= 0), 0.0, np.minimum(low, high))
-    bounds = _outward(least**2, np.maximum(low, high) ** 2)
-    return Interval(np.maximum(bounds.lower, 0), bounds.upper)
-
-
-def _reciprocal(a: Interval) -> Interval:
-    straddles = (a.lower <= 0) & (a.upper >= 0)
-    lower, upper = _outward(1 / a.upper, 1 / a.lower)
-    return Interval(np.where(straddles, -np.inf, lower), np.where(straddles, np.inf, upper))
-
-
-def _neg(a: Interval) -> Interval:
-    return Interval(-a.upper, -a.lower)
-
-
-def _hull(a: Interval, b: Interval) -> Interval:
-    return Interval(np.minimum(a.lower, b.lower), np.maximum(a.upper, b.upper))
-
-
-def _rising(function):
-    def image(a: Interval) -> Interval:
-        return _outward(function(a.lower), function(a.upper), _ELEMENTARY_ULPS)
-
-    return image
-
-
-_EXP, _LOG = _rising(np.exp), _rising(np.log)
-
-
-def _sqrt(a: Interval) -> Interval:
-    bounds = _rising(np.sqrt)(Interval(np.maximum(a.lower, 0), np.maximum(a.upper, 0)))
-    return Interval(np.maximum(bounds.lower, 0), bounds.upper)
-
-
-def _cos(a: Interval) -> Interval:
-    ends = np.cos(a.lower), np.cos(a.upper)
-    lower, upper = _outward(np.minimum(*ends), np.maximum(*ends), _ELEMENTARY_ULPS)
-    # The cosine has a maximum at each even multiple of π and a minimum at each odd one. The margin
-    # also counts multiples that rounding may have put just outside the interval.
-    first = np.ceil(a.lower / np.pi - 1e-12)
-    last = np.floor(a.upper / np.pi + 1e-12)
-    has_even = (last - first >= 1) | ((last == first) & (first % 2 == 0))
-    has_odd = (last - first >= 1) | ((last == first) & (first % 2 != 0))
-    return Interval(
-        np.where(has_odd, -1.0, np.maximum(lower, -1)),
-        np.where(has_even, 1.0, np.minimum(upper, 1)),
-    )
-
-
-def _sin(a: Interval) -> Interval:
-    shifted = _outward(a.lower - np.pi / 2, a.upper - np.pi / 2, _ELEMENTARY_ULPS)
-    return _cos(shifted)
-
-
 def _linear(combine):
     return lambda a, b: Enclosure(combine(a.value, b.value), combine(a.gradient, b.gradient))
 
 
 def _product(a: Enclosure, b: Enclosure) -> Enclosure:
     if a is b:
-        twice = _add(a.value, a.value)
-        return Enclosure(_square(a.value), _mul(twice, a.gradient))
-    slope = _add(_mul(a.value, b.gradient), _mul(b.value, a.gradient))
-    return Enclosure(_mul(a.value, b.value), slope)
+        twice = iv.add(a.value, a.value)
+        return Enclosure(iv.square(a.value), iv.multiply(twice, a.gradient))
+    slope = iv.add(iv.multiply(a.value, b.gradient), iv.multiply(b.value, a.gradient))
+    return Enclosure(iv.multiply(a.value, b.value), slope)
 
 
 def _unary(image, slope):
@@ -170,30 +94,68 @@ def _unary(image, slope):
 
     def apply(a: Enclosure) -> Enclosure:
         value = image(a.value)
-        return Enclosure(value, _mul(slope(a.value, value), a.gradient))
+        return Enclosure(value, iv.multiply(slope(a.value, value), a.gradient))
 
     return apply
 
 
-_inverse = _unary(_reciprocal, lambda _, y: _neg(_square(y)))
+def _reciprocal_root(x: Interval) -> Interval:
+    return iv.reciprocal(iv.sqrt(x))
+
+
+def _plus_one(a: Interval) -> Interval:
+    return iv.add(a, _like(a, 1.0))
+
+
+def _like(a: Interval, value: float) -> Interval:
+    return Interval(np.full_like(a.lower, value), np.full_like(a.lower, value))
+
+
+def _sign(a: Interval, _) -> Interval:
+    return Interval(np.where(a.lower >= 0, 1.0, -1.0), np.where(a.upper < 0, -1.0, 1.0))
+
+
+def _step(_, y: Interval) -> Interval:
+    """Return the slope of a step function: 0 where it is constant, and no bound where it jumps."""
+    jump = np.where(y.lower == y.upper, 0.0, np.inf)
+    return Interval(-jump, jump)
+
+
+def _root_slope(sign: float):
+    """Return the slope ±1/√(1 − x²) of arcsin and arccos."""
+
+    def slope(x: Interval, _) -> Interval:
+        root = iv.sqrt(iv.subtract(_like(x, 1.0), iv.square(x)))
+        return iv.multiply(_like(x, sign), iv.reciprocal(root))
+
+    return slope
+
+
+_inverse = _unary(iv.reciprocal, lambda _, y: iv.negate(iv.square(y)))
+_exp = _unary(iv.exp, lambda _, y: y)
+_log = _unary(iv.log, lambda x, _: iv.reciprocal(x))
 
 
 def _quotient(a: Enclosure, b: Enclosure) -> Enclosure:
     return _product(a, _inverse(b))
 
 
-def _max(a: Interval, b: Interval) -> Interval:
-    # A lower bound of one operand bounds the maximum, even if the other has no bound (NaN).
-    return Interval(np.fmax(a.lower, b.lower), np.maximum(a.upper, b.upper))
-
-
-def _min(a: Interval, b: Interval) -> Interval:
-    return Interval(np.minimum(a.lower, b.lower), np.minimum(a.upper, b.upper))
+def _angle(y: Enclosure, x: Enclosure) -> Enclosure:
+    """Return the enclosure of atan2; the slope has no bound where the angle may jump."""
+    value = iv.atan2(y.value, x.value)
+    squares = iv.add(iv.square(x.value), iv.square(y.value))
+    turn = iv.subtract(iv.multiply(x.value, y.gradient), iv.multiply(y.value, x.gradient))
+    slope = iv.divide(turn, squares)
+    jumps = (x.value.lower <= 0) & (y.value.lower <= 0) & (y.value.upper >= 0)
+    return Enclosure(
+        value,
+        Interval(np.where(jumps, -np.inf, slope.lower), np.where(jumps, np.inf, slope.upper)),
+    )
 
 
 def _either(image):
     """Make the enclosure of an operation that returns one of its two operands."""
-    return lambda a, b: Enclosure(image(a.value, b.value), _hull(a.gradient, b.gradient))
+    return lambda a, b: Enclosure(image(a.value, b.value), iv.hull(a.gradient, b.gradient))
 
 
 def _undecided(*_) -> None:
@@ -201,36 +163,58 @@ def _undecided(*_) -> None:
 
 
 _CONDITIONS = dict.fromkeys(("lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not"), _undecided)
+_LN2 = np.log(2)
+# operation -> image of an interval, and slope(argument, image)
+_FUNCTIONS = {
+    "abs": (iv.absolute, _sign),
+    "sqrt": (iv.sqrt, lambda _, y: iv.reciprocal(iv.add(y, y))),
+    "rsqrt": (
+        _reciprocal_root,
+        lambda x, y: iv.multiply(_like(x, -0.5), iv.multiply(y, iv.reciprocal(x))),
+    ),
+    "exp": (iv.exp, lambda _, y: y),
+    "exp2": (iv.exp2, lambda _, y: iv.multiply(y, iv.outward(*_like(y, _LN2)))),
+    "expm1": (iv.expm1, lambda x, _: iv.exp(x)),
+    "log": (iv.log, lambda x, _: iv.reciprocal(x)),
+    "log1p": (iv.log1p, lambda x, _: iv.reciprocal(_plus_one(x))),
+    "cos": (iv.cos, lambda x, _: iv.negate(iv.sin(x))),
+    "sin": (iv.sin, lambda x, _: iv.cos(x)),
+    "tan": (iv.tan, lambda _, y: _plus_one(iv.square(y))),
+    "asin": (iv.asin, _root_slope(1.0)),
+    "acos": (iv.acos, _root_slope(-1.0)),
+    "atan": (iv.atan, lambda x, _: iv.reciprocal(_plus_one(iv.square(x)))),
+    "sinh": (iv.sinh, lambda x, _: iv.cosh(x)),
+    "cosh": (iv.cosh, lambda x, _: iv.sinh(x)),
+    "tanh": (iv.tanh, lambda _, y: iv.subtract(_like(y, 1.0), iv.square(y))),
+    "floor": (iv.floor, _step),
+    "ceil": (iv.ceil, _step),
+}
 _OPERATIONS = {
-    "add": _linear(_add),
-    "sub": _linear(_sub),
+    "add": _linear(iv.add),
+    "sub": _linear(iv.subtract),
     "mul": _product,
     "div": _quotient,
-    "neg": lambda a: Enclosure(_neg(a.value), _neg(a.gradient)),
-    "sqrt": _unary(_sqrt, lambda _, y: _reciprocal(_add(y, y))),
-    "exp": _unary(_EXP, lambda _, y: y),
-    "log": _unary(_LOG, lambda x, _: _reciprocal(x)),
-    "cos": _unary(_cos, lambda x, _: _neg(_sin(x))),
-    "sin": _unary(_sin, lambda x, _: _cos(x)),
-    "max": _either(_max),
-    "min": _either(_min),
-    "select": lambda _, a, b: _either(_hull)(a, b),
+    "neg": lambda a: Enclosure(iv.negate(a.value), iv.negate(a.gradient)),
+    "max": _either(iv.maximum),
+    "min": _either(iv.minimum),
+    "pow": lambda a, b: _exp(_product(b, _log(a))),
+    "atan2": _angle,
+    "select": lambda _, a, b: _either(iv.hull)(a, b),
+    **{name: _unary(*parts) for name, parts in _FUNCTIONS.items()},
     **_CONDITIONS,
 }
 # The same operations on values only, for the centre of the mean value form
-_VALUES = {
-    "add": _add,
-    "sub": _sub,
-    "mul": lambda a, b: _square(a) if a is b else _mul(a, b),
-    "div": lambda a, b: _mul(a, _reciprocal(b)),
-    "neg": _neg,
-    "sqrt": _sqrt,
-    "exp": _EXP,
-    "log": _LOG,
-    "cos": _cos,
-    "sin": _sin,
-    "max": _max,
-    "min": _min,
-    "select": lambda _, a, b: _hull(a, b),
+_VALUES: dict[str, Callable[..., Any]] = {
+    "add": iv.add,
+    "sub": iv.subtract,
+    "mul": lambda a, b: iv.square(a) if a is b else iv.multiply(a, b),
+    "div": iv.divide,
+    "neg": iv.negate,
+    "max": iv.maximum,
+    "min": iv.minimum,
+    "pow": lambda a, b: iv.exp(iv.multiply(b, iv.log(a))),
+    "atan2": iv.atan2,
+    "select": lambda _, a, b: iv.hull(a, b),
+    **{name: image for name, (image, _) in _FUNCTIONS.items()},
     **_CONDITIONS,
 }

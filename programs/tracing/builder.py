@@ -20,10 +20,15 @@ class Builder:
     zero. Sums and products are therefore never re-associated.
     """
 
-    def __init__(self, inputs: Sequence[str], limit: int):
-        """Start an empty program with these names of inputs and at most `limit` steps."""
+    def __init__(self, inputs: Sequence[str], limit: int, keep_undefined: bool = False):
+        """Start an empty program with these names of inputs and at most `limit` steps.
+
+        With `keep_undefined`, a step that may be undefined is not folded away: an operation on
+        constants whose result is not finite, and x·0.
+        """
         self.inputs = tuple(inputs)
         self.limit = limit
+        self.keep_undefined = keep_undefined
         self.steps: list[Step] = []
         self._known: dict[tuple[Any, ...], int] = {}
 
@@ -37,8 +42,10 @@ class Builder:
         if not any(is_value(operand) for operand in operands):
             with np.errstate(all="ignore"):
                 # With one-element arrays, np.where and the ufuncs return the same type.
-                folded = OPERATIONS[operation].numpy(*(np.asarray([x]) for x in operands))
-            return folded.item()
+                folded = OPERATIONS[operation].numpy(*(np.asarray([x]) for x in operands)).item()
+            if not self.keep_undefined or np.isfinite(folded):
+                return folded
+            return self._append(operation, operands)
         simpler = self._simplify(operation, operands)
         return self._append(operation, operands) if simpler is None else simpler
 
@@ -76,7 +83,7 @@ class Builder:
         if (operation, constant) in _NEUTRAL and not is_value(constant):
             simplest = value
         elif (operation, constant) in _ABSORBING and not is_value(constant):
-            simplest = constant
+            simplest = None if operation == "mul" and self.keep_undefined else constant
         elif operation in ("mul", "div") and constant == -1.0 and not is_value(constant):
             simplest = self.apply("neg", value)
         elif operation == "div" and not is_value(constant) and _is_power_of_two(constant):

@@ -20,7 +20,7 @@ from programs.tracing.primitives import CALLS, apply_primitive, writable_primiti
 LIMIT = 50_000
 
 
-def trace(function: Function, limit: int = LIMIT) -> Program:
+def trace(function: Function, limit: int = LIMIT, keep_undefined: bool = False) -> Program:
     """Trace a function into a straight-line program.
 
     Calls (jit, custom derivatives, checkpoints) are inlined, scans of fixed length are unrolled,
@@ -28,9 +28,11 @@ def trace(function: Function, limit: int = LIMIT) -> Program:
     subexpressions are shared.
 
     Arguments: `function`, whose `call` is a JAX function of scalars; `limit`, the largest number of
-    steps. Returns the program, whose inputs have the names of `input_names(function)`. Raises
-    ValueError when float64 is off, when the results do not agree with `function.result`, when an
-    operation cannot be written as shader code, and when there are more than `limit` steps.
+    steps; `keep_undefined`, for proofs, keeps the steps that may be undefined although their result
+    would not matter, such as x·0, and 1/0. Returns the program, whose inputs have the names of
+    `input_names(function)`. Raises ValueError when float64 is off, when the results do not agree
+    with `function.result`, when an operation cannot be written as shader code, and when there are
+    more than `limit` steps.
     """
     if jnp.result_type(float) != np.float64:
         raise ValueError("jax_enable_x64 is False; allowed: True, set before a function is traced")
@@ -45,7 +47,7 @@ def trace(function: Function, limit: int = LIMIT) -> Program:
 
     closed, shapes = jax.make_jaxpr(flat, return_shape=True)(*[scalar] * len(names))
     _require_results(function, shapes)
-    builder = Builder(names, limit)
+    builder = Builder(names, limit, keep_undefined)
     inputs = [np.array(number, dtype=object) for number in range(len(names))]
     outputs = _inline(function.name, builder, closed, inputs, is_flat)
     return builder.finish(function.name, [_scalar(output) for output in outputs])
@@ -91,7 +93,9 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
     if all(operand.dtype != object for operand in operands):
         results = equation.primitive.bind(*operands, **equation.params)
         results = results if equation.primitive.multiple_results else [results]
-        return [np.asarray(result) for result in results]
+        folded = [np.asarray(result) for result in results]
+        if not builder.keep_undefined or all(map(_is_defined, folded)):
+            return folded
     try:
         return apply_primitive(builder, equation, operands)
     except KeyError:
@@ -101,6 +105,10 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
         ) from None
     except ValueError as error:
         raise ValueError(f"{primitive!r} in {name}: {error}") from error
+
+
+def _is_defined(result: np.ndarray) -> bool:
+    return not np.issubdtype(result.dtype, np.floating) or bool(np.all(np.isfinite(result)))
 
 
 def _unroll(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -> list[Any]:

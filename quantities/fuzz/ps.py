@@ -9,6 +9,7 @@ from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.fuzz.lights import cosines_at
+from quantities.fuzz.ps_error import error_code
 from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
 from quantities.fuzz.supplement import RATIONAL_PS
 from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, Problem
@@ -70,6 +71,7 @@ PS = Problem(
         columns=lambda points: np.stack(cosines_at(points)[:2], axis=1),
     ),
     closed_form=fraction_at,
+    error_code=error_code,
     exact_code=ExactCode(
         "closed form, root by Newton's steps",
         restricted(integrals.PS.axes, alpha=(LEAST_EXACT_ALPHA, 1.0)),

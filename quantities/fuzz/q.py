@@ -1,13 +1,35 @@
 """The quantity Q: the average chance of light to penetrate the layer."""
 
+import jax.numpy as jnp
+import numpy as np
+
 import integrals
+from fitting.form import FittedForm
+from fitting.proofs.largest_error import ErrorCode, difference_code
 from integrals.fuzz.q import average_penetration
+from integrals.special.exponential import ein
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
-from quantities.fuzz.q_forms import AXES, STRUCTURES, candidates, pole_q
+from quantities.fuzz.q_forms import AXES, LEAST_DENSITY, STRUCTURES, candidates, pole_q
 from quantities.fuzz.supplement import QUADRATIC_Q
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+
+
+def _error_code(fitted: FittedForm) -> ErrorCode:
+    """Return the code of Q̃ − Q, with Q = 2E₃(d) by its series, for d ≤ 2.
+
+    Three things are left out: the terms after the last one of the series, below 1e-20; the rounding
+    of γ and of the series' coefficients, below 1e-15 together; and d² ln d for d below
+    `LEAST_DENSITY`.
+    """
+
+    def exact(density):
+        logarithm = jnp.log(jnp.maximum(density, LEAST_DENSITY))
+        e1, escape = ein(density) - np.euler_gamma - logarithm, jnp.exp(-density)
+        return escape - density * (escape - density * e1)
+
+    return difference_code(fitted, exact, 1e-15)
 
 
 def exact_functions(_: str) -> tuple[Function, ...]:
@@ -33,6 +55,7 @@ Q = Problem(
         remark="density is thickness over mean free path",
     ),
     closed_form=average_penetration,
+    error_code=_error_code,
     exact_code=ExactCode(
         "closed form, by an exponential integral",
         AXES,

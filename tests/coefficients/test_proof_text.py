@@ -7,7 +7,7 @@ import pytest
 
 from coefficients.catalogue import Entry, names, resolve
 from coefficients.proof_text import proof_text, proofs
-from coefficients.table import serialise
+from coefficients.table import parse, serialise
 
 
 def certificates_of(name: str):
@@ -51,6 +51,24 @@ def test_one_sided_tables_say_so():
 
 def test_nothing_is_proven_of_what_was_published():
     assert proof_text(certificates_of("published/g")) == []
+
+
+@pytest.mark.parametrize("upper", [0.06713230369730813, 8.166033525e-06, 0.0, 1.0, 0.9999999])
+def test_a_proven_largest_error_is_rounded_up(upper):
+    largest = {"lower": 0.0, "at": {"density": 0.5}, "upper": upper, "boxes": 7}
+    data = data_of("q")
+    data["certificates"]["largest_error"] = largest
+    certificates = parse(json.dumps(data), "q").certificates
+    (text,) = re.findall(rf"errors ≤ ({NUMBER}(?:e-\d+)?)", "; ".join(proof_text(certificates)))
+    assert upper <= float(text) <= upper * 1.001 + 1e-300
+
+
+def test_a_largest_error_below_its_own_point_is_refused():
+    data = data_of("q")
+    at = {"density": 0.5}
+    data["certificates"]["largest_error"] = {"lower": 0.2, "at": at, "upper": 0.1, "boxes": 7}
+    with pytest.raises(ValueError, match=r"at least 0\.2 and at most 0\.1"):
+        parse(json.dumps(data), "q")
 
 
 def written(path, name: str, **changes) -> Entry:

@@ -49,7 +49,7 @@ def test_where_no_bound_is_sought_there_is_none():
     assert least_error(silent, NODES, EXACT, errors) is None
     assert (
         not problem("q")
-        .form("pole-q", {"structure": "one", "terms": 2, "poles": 0})
+        .find_form("pole-q", {"structure": "one", "terms": 2, "poles": 0})
         .has_least_error
     )
     points = np.array([[0.1, 0.2], [0.3, 0.4]])

@@ -65,7 +65,7 @@ def test_a_function_with_a_pole_is_refused(name):
     assert not found.holds
     assert found.bound == -np.inf
     # None of these reaches the limit on the number of boxes.
-    assert 1 <= found.boxes < 20_000
+    assert found.boxes < 20_000
 
 
 def test_sampling_would_miss_a_pole_that_the_proof_finds():
@@ -157,8 +157,9 @@ def test_operands_of_roots_and_logarithms_are_proven_too(name):
 
 
 def test_an_operation_without_an_interval_version_is_refused():
-    with pytest.raises(ValueError, match=r"operation 'tan' .* has no meaning here"):
-        prove_no_pole(program_of(lambda a, t: jnp.tan(4 * t)), BOX)
+    program = Program("Example", ("a", "t"), (Step("gamma", (0,)),), (2,))
+    with pytest.raises(ValueError, match=r"operation 'gamma' .* has no meaning here"):
+        prove_no_pole(program, BOX)
 
 
 @pytest.mark.parametrize(("lowest", "holds"), [(1e-3, True), (0.0, False), (-1e-3, False)])
@@ -196,8 +197,8 @@ def test_a_constant_divisor_hides_no_value_of_the_same_number():
 
 def test_a_box_is_settled_if_both_bounds_are_allowed():
     settled = within(NOWHERE_NEGATIVE)
-    below, above = np.array([0.0, -1e-301, -1e-3]), np.array([1.0, 2.0, np.inf])
-    assert settled(below, above, 0.0, 1.0).tolist() == [True, True, False]
+    below, above = np.array([0.0, -5e-324, -1e-3]), np.array([1.0, 2.0, np.inf])
+    assert settled(below, above, 0.0, 1.0).tolist() == [True, False, False]
     settled = within((0.0, 1.0))
     assert settled(np.zeros(3), np.array([1.0, 2.0, 0.5]), 0.0, 1.0).tolist() == [True, False, True]
 
