@@ -11,6 +11,7 @@ from jax import Array
 from fitting.form import Form
 from fitting.goal import Side
 from fitting.linearity import LinearParts, linear_parts, positive_of
+from fitting.points.scattered import scattered_points
 from integrals.reference import in_batches
 
 # The number of points at which values are evaluated at once, and at which derivatives are.
@@ -18,6 +19,8 @@ _BATCH, _BATCH_OF_SLOPES = 4096, 512
 # The values of a bounded fit are kept this far from the ends of the codomain at the points, so that
 # they also stay within it elsewhere.
 _ROOM = 1e-3
+# Between data, denominators are kept positive at 2^this many points and half as many on faces.
+_BETWEEN, _SEED = 10, 20201128
 # When points and steps are chosen, the part of an error beyond what is allowed counts this many
 # times.
 _WRONG = 1e5
@@ -29,7 +32,8 @@ class Residuals:
 
     * `values` returns the errors (n,) at all points.
     * `slopes` takes the indices of some points too, and returns the derivatives (rows, m) there.
-    * `positive` and `positive_slopes` do the same for the number that must stay positive.
+    * `positive` and `positive_slopes` do the same for the number that must stay positive. Of data,
+      there are further points between the data's own, because the proof is about all of them.
     * `least` and `most` (n,) are the lowest and the highest error that is allowed at each point.
     * `exact` and `scale` (n,) are the exact values and the weights of the errors.
     * `parts`: the form as a quotient of linear functions of the free coefficients; None if it is no
@@ -80,11 +84,15 @@ def residuals(
         (end - exact) * scale if bounded else np.full(len(exact), limit)
         for end, limit in ((low, -np.inf), (high, np.inf))
     )
+    guarded = points
+    if form.reference.data is not None:
+        between = scattered_points(form.reference, form.axes, _BETWEEN, _SEED)
+        guarded = np.concatenate([points, between])
     return Residuals(
         lambda z: (at(_values, z, points, _BATCH) - exact) * scale,
         lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free] * scale[rows, None],
-        lambda z: at(_rooms, z, points, _BATCH),
-        lambda z, rows: at(_room_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free],
+        lambda z: at(_rooms, z, guarded, _BATCH),
+        lambda z, rows: at(_room_slopes, z, guarded[rows], _BATCH_OF_SLOPES)[:, free],
         least,
         most,
         exact,
