@@ -229,5 +229,5 @@ def traced(
     parameters = tuple(Parameter(axis.name, (axis.lower, axis.upper)) for axis in axes)
     reference = fitted.reference
     summary = f"{reference.symbol} by {fitted.form.equation}"
-    function = Function(reference.name, summary, parameters, results, "value", call)
+    function = Function("form", summary, parameters, results, "value", call)
     return trace(function, keep_undefined=True)

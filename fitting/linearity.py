@@ -20,9 +20,11 @@ from programs.bounding.denominators import ALLOWED, operands
 from programs.functions import Function, Parameter
 from programs.jax_operations import JAX_OPERATIONS
 from programs.operations import OPERATIONS
-from programs.program import Program, interpret, subprogram
+from programs.program import Program, evaluate, interpret, subprogram
 from programs.tracing.tracer import trace
 
+# The sign of a divisor is found at this many points. An infinite end is replaced by `_FAR`.
+_PROBES, _FAR = 16, 1e6
 # Tracing needs a range for every input, but nothing here depends on it.
 _ANY = (-1.0, 1.0)
 
@@ -192,7 +194,7 @@ def derived_positive(form: Form) -> Callable[..., Array]:
 
     It is the least of the divisors, radicands and arguments of logarithms in the form's program, as
     far as they depend on a coefficient. A divisor that is a square root is left out, because its
-    radicand is among them.
+    radicand is among them. A divisor that is negative at the form's start stays negative.
     """
     program = program_of(form)
     found = {
@@ -209,14 +211,33 @@ def derived_positive(form: Form) -> Callable[..., Array]:
         and not (value >= first and program.steps[value - first].operation == "sqrt")
     ]
     wanted = subprogram(program, chosen)
+    divisors = operands(program, "div", 1)
+    signs = [
+        -1.0 if value in divisors and negative else 1.0
+        for value, negative in zip(chosen, _negative_at_start(form, wanted), strict=True)
+    ]
 
     def positive(coefficients, *point) -> Array:
         if not chosen:
             return jnp.ones(())
         inputs = [*(jnp.ravel(coefficients)[k] for k in range(size)), *map(jnp.asarray, point)]
-        return functools.reduce(jnp.minimum, interpret(wanted, inputs, JAX_OPERATIONS, jnp.asarray))
+        found = interpret(wanted, inputs, JAX_OPERATIONS, jnp.asarray)
+        signed = [value if sign > 0 else -value for value, sign in zip(found, signs, strict=True)]
+        return functools.reduce(jnp.minimum, signed)
 
     return positive
+
+
+def _negative_at_start(form: Form, program: Program) -> np.ndarray:
+    """Return whether each output is negative at the form's first start, at most of some points."""
+    if not (form.starts and program.outputs):
+        return np.zeros(len(program.outputs), bool)
+    fractions = np.linspace(0.05, 0.95, _PROBES)
+    ends = [(max(a.lower, -_FAR), min(a.upper, _FAR)) for a in form.axes]
+    points = np.stack([low + (high - low) * fractions for low, high in ends], axis=1)
+    start = np.tile(np.ravel(form.starts[0]), (_PROBES, 1))
+    values = evaluate(program, np.concatenate([start, points], axis=1))
+    return np.mean(values < 0, axis=0) > 0.5
 
 
 def positive_of(form: Form) -> Callable[..., Array]:

@@ -1,5 +1,6 @@
 """`Problem` as a user declares it: axes, exact values, forms, published constants, shader names."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -30,6 +31,8 @@ from quantities.problem import ExactCode, PlotHints, Published
 from quantities.problem import Problem as Quantity
 from shadefit.result import Result, fit_result
 
+# The names that tables may have
+_NAME = r"[a-z0-9][a-z0-9._-]{0,63}"
 # A form without a docstring gets its formula as the equation, if that is not longer than this.
 _LONGEST = 300
 
@@ -78,6 +81,8 @@ class Problem(Quantity):
         plot: PlotHints | None = None,
     ):
         """Raise ValueError for a source that does not fit the axes, and for names of no axis."""
+        if not re.fullmatch(_NAME, name):
+            raise ValueError(f"name {name!r}: allowed are up to 64 of a-z, 0-9, '-', '_' and '.'")
         closed = reference.function if isinstance(reference, Source) else None
         if not isinstance(reference, Reference):
             reference = make_reference(

@@ -1,6 +1,6 @@
 """Proofs that a program has no pole, no NaN and no overflow on a whole box, not only at samples.
 
-Every divisor is bounded from below by a positive number. The operands of all other operations that
+The size of every divisor is bounded from below by a positive number. The operands of all other operations that
 are not defined everywhere are shown to be in their domains. Then every intermediate value is shown
 to be finite in float64. A proof is about exact arithmetic: a value that exactly is zero may be
 negative after rounding.
@@ -14,7 +14,7 @@ import numpy as np
 from programs.bounding.branch_and_bound import BranchAndBound, Settled
 from programs.bounding.finite import unbounded_values
 from programs.bounding.interval import enclose
-from programs.program import Program, Step, is_value, subprogram
+from programs.program import Program, Step, evaluate, is_value, subprogram
 
 # A proven bound is at least this factor times the least value that is attained.
 TIGHTNESS = 0.9
@@ -38,7 +38,7 @@ SOLVER = BranchAndBound()
 
 @dataclass(frozen=True)
 class DenominatorBound:
-    """A proven lower bound of every denominator on a box.
+    """A proven lower bound of the size of every denominator on a box.
 
     `bound` is +∞ if there is no denominator, and −∞ if nothing is proven. `boxes` is the number of
     boxes that were examined for denominators and domains.
@@ -59,10 +59,11 @@ def prove_no_pole(
     enough: float = np.inf,
     solver: BranchAndBound = SOLVER,
 ) -> DenominatorBound:
-    """Bound every divisor of a program from below on a box.
+    """Bound the size of every divisor from below on a box.
 
-    Operands of roots, logarithms and other operations are shown to be in their domain too, and all
-    values to be finite. Divisors that are constants are only shown not to be zero. Arguments: `box`
+    A divisor may be negative everywhere instead of positive. Operands of roots, logarithms and
+    other operations are shown to be in their domain too, and all values to be finite. Divisors that
+    are constants are only shown not to be zero. Arguments: `box`
     (inputs, 2), the ends of each side; `enough`, a bound that need not be improved; `solver`, with
     its limits. Trace the program with `keep_undefined`, else x·0 and 1/0 are no part of it. Returns
     the least of the bounds; −∞ if something is not proven. Raises ValueError for an operation that
@@ -76,11 +77,16 @@ def prove_no_pole(
     if not (finite and all(map(_is_defined, program.steps))):
         return DenominatorBound(-np.inf, boxes)
     for operand in operands(program, "div", 1):
-        found = bound_below(subprogram(program, [operand]), box, enough, solver)
+        part = subprogram(program, [operand])
+        negative = evaluate(part, box.mean(axis=1)[None])[0, 0] < 0
+        if negative:
+            part = _extended(program, (Step("neg", (operand,)),))
+        found = bound_below(part, box, enough, solver)
         bound, boxes = min(bound, found.bound), boxes + found.boxes
         if not found.holds:
             return DenominatorBound(-np.inf, boxes)
-        proven[operand] = found.bound
+        if not negative:
+            proven[operand] = found.bound
     for value, part, allowed in _domains(program):
         shown = solver.bound_output(part, box, allowed, within(allowed))
         boxes += shown.boxes

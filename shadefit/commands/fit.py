@@ -65,8 +65,7 @@ def fit(
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
     from integrals.data import table
-    from shadefit.result import fit_result
-    from shadefit.terminal import print_json, stages
+    from shadefit.terminal import print_json
 
     columns = [part.strip() for part in x.split(",")]
     found = table(data, columns, y, sigma)
@@ -82,20 +81,7 @@ def fit(
     command = ["shadefit", "fit", str(data), "--x", x, "--y", y]
     command += [] if sigma is None else ["--sigma", sigma]
     command += ["--hold-out", str(hold_out)]
-    options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
-    results: list[Result] = []
-    refused: list[str] = []
-    with stages() as progress:
-        task = progress.add_task("")
-        for text, each in zip(form, owner.forms, strict=True):
-            progress.update(task, description=f"{owner.name}: {text}")
-            own = shlex.join([*command, "--form", text]) + options
-            try:
-                results.append(fit_result(owner, each, goal, own))
-            except ValueError as error:
-                refused.append(str(error))
-    if not results:
-        raise ValueError("; ".join(refused))
+    results, refused = _fits(owner, goal, shlex.join(command), form)
     for reason in refused:
         print(f"refused: {reason}", file=sys.stderr)
     several = len(form) > 1
@@ -119,6 +105,32 @@ def fit(
             print(file)
     if several:
         _print_together(results)
+
+
+def _fits(
+    owner: "Problem", goal: dict[str, Any], command: str, texts: list[str]
+) -> "tuple[list[Result], list[str]]":
+    """Fit every form. Return the results, and why others were refused.
+
+    Raises ValueError if all are refused.
+    """
+    from shadefit.result import fit_result
+    from shadefit.terminal import stages
+
+    options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
+    results: list[Result] = []
+    refused: list[str] = []
+    with stages() as progress:
+        task = progress.add_task("")
+        for text, each in zip(texts, owner.forms, strict=True):
+            progress.update(task, description=f"{owner.name}: {text}")
+            try:
+                results.append(fit_result(owner, each, goal, f"{command} --form {text}{options}"))
+            except ValueError as error:
+                refused.append(str(error))
+    if not results:
+        raise ValueError("; ".join(refused))
+    return results, refused
 
 
 def _problem(

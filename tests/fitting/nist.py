@@ -88,8 +88,8 @@ _MODELS = {
     "Nelson": lambda b, x, z: b[0] - b[1] * x * jnp.exp(-b[2] * z),
     "Rat42": lambda b, x: b[0] / (1 + jnp.exp(b[1] - b[2] * x)),
     "Rat43": lambda b, x: b[0] / (1 + jnp.exp(b[1] - b[2] * x)) ** (1 / b[3]),
-    # A fit keeps divisors positive: x − b₄ is negative for all data.
-    "Roszman1": lambda b, x: b[0] - b[1] * x + jnp.arctan(b[2] / (b[3] - x)) / math.pi,
+    # The divisor x − b₄ is negative for all data.
+    "Roszman1": lambda b, x: b[0] - b[1] * x - jnp.arctan(b[2] / (x - b[3])) / math.pi,
     "Thurber": _cubics,
 }
 NAMES = tuple(_MODELS)

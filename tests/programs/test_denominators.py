@@ -52,7 +52,6 @@ POLES = {
     # 1 − cos(θ − 0.7) touches zero between nodes; rounding may leave it just above zero.
     "touches zero between nodes": quotient(0, -np.cos(0.7), -np.sin(0.7)),
     "crosses zero between nodes": quotient(0, -1.00001 * np.cos(0.7), -1.00001 * np.sin(0.7)),
-    "negative everywhere": quotient(0, -2, -2),
     "not a number": quotient(np.nan, 0, 0),
     "in the second of two quotients": program_of(lambda a, t: 1 / (1 + a) + 1 / (a - 0.5)),
     "inside a denominator that is positive": program_of(lambda a, t: 1 / (1 + 1 / (t - 1) ** 2)),
@@ -206,3 +205,11 @@ def test_a_box_is_settled_if_both_bounds_are_allowed():
 def test_a_bound_of_zero_is_no_proof():
     assert DenominatorBound(1e-300, 1).holds
     assert not DenominatorBound(0.0, 1).holds
+
+
+def test_a_divisor_that_is_negative_everywhere_is_no_pole():
+    program = program_of(lambda a: 1 / (a - 3), "a")
+    found = prove_no_pole(program, np.array([[0.0, 1.0]]))
+    assert 1.8 <= found.bound <= 2
+    across = prove_no_pole(program, np.array([[0.0, 4.0]]))
+    assert not across.holds
