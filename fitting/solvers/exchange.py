@@ -143,6 +143,9 @@ class Exchange:
         Returns the coefficients with the least largest error, inside and outside the sample, the
         extended sample, and whether the last largest error is nowhere larger.
         """
+        if form.reference.data is not None:
+            # Data have no values elsewhere: the rows that are held out judge the fit.
+            return self.minimax(_problem(form, sample, goal), start, goal.side), sample, True
         best, least, found, settled = start, np.inf, start, not len(start)
         for turn in range(self.exchanges if len(start) else 0):
             problem = _problem(form, sample, goal)

@@ -17,6 +17,8 @@ _NEAR, _SPREAD = 3, 0.3
 _SEED = 20110917
 # The penalty applies where the number that must stay positive is below this part of its mean size.
 _FLOOR = 1e-2
+# An end without the penalty is kept only if nothing is below this part of the mean.
+_ROOM = 1e-3
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,16 @@ def _descend(
     if not problem.is_good(ends[-1].z):
         ends[-1] = _with_penalty(problem, start, descend, guarded, slopes)
     good = [end for end in ends if problem.is_good(end.z)]
+    # An end that is not stationary may be on the verge of a pole.
+    safe = [end for end in good if end.converged or _has_room(problem, end.z)]
     # A stationary point is preferred, unless it is worse.
-    return min(good, key=lambda end: (end.norm, not end.converged)) if good else None
+    return min(safe or good, key=lambda end: (end.norm, not end.converged)) if good else None
+
+
+def _has_room(problem: Residuals, z: np.ndarray) -> bool:
+    """Whether what must stay positive is not much less than its mean anywhere."""
+    room = problem.positive(z)
+    return bool(room.min(initial=1) >= _ROOM * room.mean())
 
 
 def _with_penalty(problem: Residuals, start, descend, guarded, slopes) -> Descent:
@@ -120,4 +130,4 @@ def _with_penalty(problem: Residuals, start, descend, guarded, slopes) -> Descen
     if not problem.is_good(end.z):
         return end
     free = descend(guarded, slopes, end.z)
-    return free if np.isfinite(free.norm) else end
+    return free if free.converged or _has_room(problem, free.z) else end

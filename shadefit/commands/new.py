@@ -37,7 +37,7 @@ def integrand(t, {arguments}):
     # monte_carlo(f, …), or measured data: table("data.csv", x=[…], y="…").
     reference=quadrature(integrand, over=[(0, 1)]),
     symbol="{symbol}",
-    definition="∫₀¹ exp(−t ({sum})) dt",
+    definition="∫₀¹ exp(−t {sum}) dt",
     meaning="say in a few words what it is",
     shader="{shader}",
 )
@@ -48,7 +48,7 @@ def integrand(t, {arguments}):
 @{variable}.form(start=[1.0, 0.5])
 def short({arguments}, a, b):
     """a/(1 + b z), z = {sum}"""
-    return a / (1 + b * ({sum}))
+    return a / (1 + b * {sum})
 
 
 # Quotients of polynomials, of degrees 1 and 2: their starts are found.
@@ -98,7 +98,7 @@ def problem_file(name: str, axes: list[str], file: str) -> str:
         name=name,
         point=" ".join(f"--{n.replace('_', '-')} {(low + high) / 2:g}" for n, low, high in found),
         arguments=", ".join(names),
-        sum=" + ".join(names),
+        sum=names[0] if len(names) == 1 else f"({' + '.join(names)})",
         variable=variable,
         axes="\n".join(f'        Axis("{n}", {low!r}, {high!r}),' for n, low, high in found),
         symbol=name,

@@ -8,6 +8,7 @@ from shadefit.figures.frontier import draw_frontier
 from shadefit.figures.fuzz_pictures import DRAWN, fuzz_pictures
 from shadefit.figures.maps import draw_errors
 from shadefit.figures.picture import Picture
+from shadefit.figures.result import draw_data
 
 _DRAW = {1: draw_curves, 2: draw_errors}
 
@@ -36,7 +37,13 @@ def pictures() -> dict[str, Picture]:
 
 
 def errors_picture(owner: Problem) -> Picture:
-    """Return the picture of a quantity's values and of the errors of the tables that are kept."""
+    """Return the picture of a quantity's values and of the errors of the tables that are kept.
+
+    Of data, the values alone are drawn: tables have no errors between them.
+    """
+    if owner.reference.data is not None:
+        caption = f"{owner.description}: the values of {owner.reference.data.source}."
+        return Picture(f"Values of {owner.symbol}", caption, partial(draw_data, owner))
     draw = _DRAW[len(owner.axes)]
     caption = f"{owner.description}: the exact values, and the signed errors of its tables."
     return Picture(f"Errors of {owner.symbol}", caption, partial(draw, owner))

@@ -46,6 +46,24 @@ def draw_result(owner: Problem, fitted: FittedForm) -> Figure:
     return figure
 
 
+def draw_data(owner: Problem) -> Figure:
+    """Draw the values of data over their first one or two axes."""
+    data, hints = owner.reference.data, [hint for _, hint in axis_hints(owner)]
+    assert data is not None
+    figure = Figure(figsize=(5.6, 3.8), layout="constrained")
+    axes = figure.subplots()
+    x = data.points[:, 0] * hints[0].factor
+    if len(hints) == 1:
+        axes.scatter(x, data.values, s=12, color=COLOURS["exact"])
+        axes.set(xlabel=hints[0].shown_label, ylabel=f"${owner.symbol}$")
+        return figure
+    y = data.points[:, 1] * hints[1].factor
+    drawn = axes.scatter(x, y, c=data.values, s=12, cmap=VALUES)
+    axes.set(xlabel=hints[0].shown_label, ylabel=hints[1].shown_label)
+    figure.colorbar(drawn, ax=axes, label=f"${owner.symbol}$")
+    return figure
+
+
 def _curve(owner: Problem, fitted: FittedForm, hint: AxisHint) -> Figure:
     figure = Figure(figsize=(5.6, 5.0), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))

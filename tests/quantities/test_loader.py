@@ -99,3 +99,70 @@ def test_a_syntax_error_names_the_line(tmp_path):
     path.write_text("x = = 1\n")
     with pytest.raises(ProblemFileError, match="line 1"):
         load_problems(str(path))
+
+
+SHORT = """
+from shadefit import Axis, Problem, closed_form
+p = Problem("one", [Axis("x", 0, 1)], closed_form(lambda x: x * x){})
+"""
+MISUSE = {
+    "a misspelt axis": (
+        "@p.form\ndef line(y, c0):\n    return c0 * y\n",
+        "mine.py:4: line(y, c0) begins with y: allowed are the axes x",
+    ),
+    "NaN in the reference": (
+        "q = Problem('two', [Axis('x', 0, 1)], closed_form(lambda x: x / x))\n",
+        "mine.py:4: lambda(x) is NaN at x = 0",
+    ),
+    "an operation that cannot be exported": (
+        "import jax.numpy as jnp\n@p.form\ndef f(x, a):\n    return a * jnp.linalg.det(x)\n",
+        "mine.py",
+    ),
+    "an empty domain": (
+        "q = Problem('two', [Axis('x', 1, 0)], closed_form(lambda x: x))\n",
+        "mine.py:4: x in [1, 0]: it is empty",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", MISUSE)
+def test_misuse_in_a_file_is_told_with_its_line(tmp_path, case):
+    more, message = MISUSE[case]
+    path = tmp_path / "mine.py"
+    path.write_text(SHORT.format("") + more)
+    with pytest.raises((ValueError, ProblemFileError)) as caught:
+        load_problems(str(path))
+    assert message in str(caught.value)
+    assert "/quantities/" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("published", "message"),
+    [
+        ("Published('none', [1.0], 'a paper')", "form 'none' is not known: allowed are line"),
+        ("Published('line', [1.0, 2.0], 'a paper')", "2 given, form 'line' has 1 coefficients"),
+    ],
+)
+def test_published_constants_of_no_form_are_refused(tmp_path, published, message):
+    path = tmp_path / "mine.py"
+    text = SHORT.format(f", published=[{published}]").replace(
+        "import Axis", "import Published, Axis"
+    )
+    path.write_text(text + "p.form(lambda x, a: a * x, name='line')\n")
+    with pytest.raises(ValueError, match=r"mine\.py: published constants of one") as caught:
+        load_problems(str(path))
+    assert message in str(caught.value)
+
+
+def test_data_beside_the_file_are_found(tmp_path, monkeypatch):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "data.csv").write_text("x,y\n0,1\n1,2\n")
+    path = tmp_path / "folder" / "mine.py"
+    path.write_text(
+        "from shadefit import Axis, Problem, table\n"
+        "p = Problem('one', [Axis('x', 0, 1)], table('data.csv', x=['x'], y='y'))\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    (problem,) = load_problems(str(path))
+    assert problem.reference.data.values.tolist() == [1, 2]
+    unregister("one")
