@@ -1,8 +1,8 @@
 """Proofs that a program has no pole, no NaN and no overflow on a whole box, not only at samples.
 
-The size of every divisor is bounded from below by a positive number. The operands of all other operations that
-are not defined everywhere are shown to be in their domains. Then every intermediate value is shown
-to be finite in float64. A proof is about exact arithmetic: a value that exactly is zero may be
+The size of every divisor is bounded from below by a positive number. The operands of all other
+operations that are not defined everywhere are shown to be in their domains. Then every intermediate
+value is shown to be finite in float64. A proof is about exact arithmetic: a value that exactly is zero may be
 negative after rounding.
 """
 
