@@ -51,7 +51,7 @@ def refit_all(folder: Path) -> dict:
     command = [sys.executable, "-c", code, "refit", "all", "--out", str(folder), "--json"]
     wall, processor, memory, text = timed(command)
     tables = json.loads(text)["tables"]
-    rms = {table["quantity"]: table["errors"]["off_grid"]["rms"] for table in tables}
+    rms = {table["quantity"]: table["errors"]["rms"] for table in tables}
     return {"seconds": wall, "processor_seconds": processor, "mebibytes": memory, "rms": rms}
 
 

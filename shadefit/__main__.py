@@ -33,7 +33,11 @@ def _wait_for_interruption(reader: int) -> None:
     temporary = sys.modules.get("programs.toolchains.temporary")
     if temporary is not None:
         temporary.discard_unfinished()
+    progress = sys.modules.get("shadefit.progress")
+    if progress is not None:
+        progress.clear()
     kept = _KEPT.get(next(iter(sys.argv[1:]), ""), "no file is half written")
+    # The terminal has written ^C at the start of the line.
     cursor = _SHOW_CURSOR if sys.stderr.isatty() else ""
     os.write(2, f"{cursor}shadefit: interrupted; {kept}\n".encode())
     os._exit(_INTERRUPTED)

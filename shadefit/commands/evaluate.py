@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from shadefit.commands.names import require_quantities, require_tables
 from shadefit.commands.options import Json, angle, checked, flag_of
 from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
+    from coefficients.catalogue import Entry
     from fitting import FittedForm
     from integrals.reference import Axis, Estimate, Reference
     from quantities import Problem
@@ -45,7 +47,7 @@ def evaluate(
     """Evaluate an integral at one point, by all exact methods and by tables.
 
     The exact methods are closed form, quadrature and Monte Carlo, if they exist.
-    The tables are the published one, the refitted one, and those of --table.
+    The tables are the published, the refitted and the best ones, and those of --table.
 
     Each argument of the integral is an option:
     --alpha, --theta-f, --theta-u and --phi of ps; --density and --cos-v of g;
@@ -66,10 +68,14 @@ def run(
 ) -> None:
     """Evaluate the quantity `name` at the point that the options `given` state.
 
-    Prints the values of every leg, of the published table, of the refitted one, and of the tables
+    Prints the values of every leg, of the published, refitted and best tables, and of the tables
     that `extra` names.
     """
+    require_quantities([name], "no integral is called")
+    require_tables(extra)
     from quantities import problems
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.records import EvaluatedTable, EvaluateOutput, Leg
     from shadefit.terminal import place, print_json, print_table
 
     known = problems()
@@ -95,20 +101,28 @@ def run(
             f"{owner.symbol} has no limit at {place(arguments)}, and no value: "
             "allowed are all other points of its domain"
         )
-    found = {label: _by_form(fitted, arguments, exact) for label, fitted in tables.items()}
+    found = {
+        label: _by_form(each.require_fitted(), arguments, exact) for label, each in tables.items()
+    }
     if json:
-        print_json({"quantity": name, "arguments": arguments, "legs": legs, "tables": found})
+        records = [
+            EvaluatedTable(**entry_fields(tables[label]), label=label, **each)
+            for label, each in found.items()
+        ]
+        exacts = {leg: Leg(**each) for leg, each in legs.items()}
+        print_json(EvaluateOutput(quantity=name, where=arguments, legs=exacts, tables=records))
         return
     rows = [
-        [leg_name.replace("_", " "), f"{leg['value']:.15g}", f"± {leg['error']:.1e}"]
+        [leg_name.replace("_", " "), f"{leg['value']:.15g}", f"± {leg['error']:.1e}", ""]
         for leg_name, leg in legs.items()
     ]
     print_table(
         f"{owner.symbol} = {reference.definition}",
-        ["by", "value", "error"],
+        ["by", "value", "error", ""],
         rows + [[label, *_cells(entry)] for label, entry in found.items()],
         "Error: stated by the leg (Monte Carlo: one standard error); of a table, its distance "
         "from the exact value.",
+        below=1,
     )
 
 
@@ -159,22 +173,24 @@ def _compiled(
     return jax.jit(functools.partial(reference.legs[leg], **dict(options)))
 
 
-def _tables(owner: "Problem", extra: list[str]) -> "dict[str, FittedForm]":
-    """Return the fitted forms of the tables to show, by label.
+def _tables(owner: "Problem", extra: list[str]) -> "dict[str, Entry]":
+    """Return the tables to show, by label: published, refitted and best ones, and those of `extra`.
 
     Raises ValueError if a table that `extra` names belongs to another quantity.
     """
-    from coefficients.catalogue import published, refitted, resolve
+    from coefficients.catalogue import entries, published, refitted, resolve
 
     known = {"published": published(owner), "refitted": refitted(owner)}
-    found = {label: each.require_fitted() for label, each in known.items() if each is not None}
+    found = {label: each for label, each in known.items() if each is not None}
+    found |= {each.name: each for each in entries(owner) if each.kind == "best"}
     for name in extra:
         entry = resolve(name)
         if entry.problem is not owner:
             raise ValueError(
                 f"table {name} is of {entry.problem.name}: allowed are those of {owner.name}"
             )
-        found[name] = entry.require_fitted()
+        entry.require_table()
+        found[name] = entry
     return found
 
 
@@ -192,5 +208,5 @@ def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float) ->
 
 def _cells(entry: dict) -> list[str]:
     if entry["value"] is None:
-        return ["—", entry["reason"]]
-    return [f"{entry['value']:.15g}", f"{entry['difference']:+.1e}"]
+        return ["—", "—", entry["reason"]]
+    return [f"{entry['value']:.15g}", f"{entry['difference']:+.1e}", ""]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from shadefit.commands.names import require_quantities
 from shadefit.commands.options import (
     Bounded,
     Json,
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from coefficients.table import Table
     from quantities import Problem
+    from shadefit.records import RefittedTable
 
 ALL = "all"
 # Two fits run at a time: while JAX compiles one on one core, the other uses a second core.
@@ -38,7 +40,9 @@ def refit(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for NAME.json; by default the packaged table is replaced."),
+        typer.Option(
+            help="Folder for NAME.json; by default, in a checkout, the packaged table is replaced."
+        ),
     ] = None,
     grid: Annotated[
         int, typer.Option(help="Nodes along each axis of the grid, 9 to 129; not for best/NAME.")
@@ -72,14 +76,19 @@ def run(
 ) -> None:
     """Refit tables, and write `out`/NAME.json for each. If any fit fails, nothing is written.
 
-    If `out` is None, the packaged tables are replaced. `given` has the fields of the goal that
-    replace those of the table's own goal.
+    If `out` is None, the packaged tables of the checkout are replaced. `given` has the fields of
+    the goal that replace those of the table's own goal.
     """
+    from coefficients.packaged import names_of_best
+
+    require_quantities(names, "nothing is called", (ALL, *names_of_best()))
     from concurrent.futures import ThreadPoolExecutor
 
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
-    from shadefit.terminal import print_json, print_table, stages
+    from shadefit.progress import stages
+    from shadefit.records import RefitOutput
+    from shadefit.terminal import print_json, print_table
 
     _require_measure(weight)
     chosen = selection(names)
@@ -95,14 +104,17 @@ def run(
     with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
 
         def make(each: "Problem | Entry") -> "Table":
-            task = progress.add_task(each.name, total=None)
+            line = progress.begin(each.name)
 
             def tell(stage: str) -> None:
-                progress.update(task, description=f"{each.name}: {stage}")
+                line.show(f"{each.name}: {stage}")
 
             table = _table(each, grid, weight, given, tell)
-            tell("done")
+            line.end(f"{each.name}: done")
+            whole.advance()
             return table
+
+        whole = progress.begin("tables", total=len(chosen))
 
         tables = list(workers.map(make, chosen))
     files = [folder / f"{table.name}.json" for folder, table in zip(folders, tables, strict=True)]
@@ -110,13 +122,14 @@ def run(
         write_whole(file, serialise(table))
     if as_json:
         records = [_record(table, file) for table, file in zip(tables, files, strict=True)]
-        print_json({"tables": records})
+        print_json(RefitOutput(tables=records))
     else:
         print_table(
             "Refitted tables",
-            ["table", "equation", "coefficients", "rms", "largest", "denominators ≥", "file"],
+            ["table", "equation", "coefficients", "rms", "largest", "denominators ≥", ""],
             [_row(table, file) for table, file in zip(tables, files, strict=True)],
             "Errors are measured off the grid, against exact values.",
+            below=1,
         )
 
 
@@ -126,7 +139,8 @@ def selection(names: list[str]) -> "list[Problem | Entry]":
     Quantities come first, in the order of the registry. 'all' stands for all of them; no name, for
     those of the user's problem files or, if there are none, for all.
     """
-    from coefficients.catalogue import names_of_best, resolve
+    from coefficients.catalogue import resolve
+    from coefficients.packaged import names_of_best
     from quantities import problems
 
     every, best = problems(), names_of_best()
@@ -162,9 +176,12 @@ def _has_own_goal(each: "Problem | Entry") -> bool:
 def _own_folder(name: str) -> Path:
     """Return the folder of a packaged table, relative to the working directory if it is inside."""
     from coefficients.catalogue import is_kept, path_of
+    from coefficients.packaged import in_checkout
 
     if not is_kept(name):
         raise ValueError(f"{name} has no folder of its own: give one by --out")
+    if not in_checkout():
+        raise ValueError(f"{name} comes with an installed package: give a folder by --out")
     folder, here = path_of(name).parent, Path.cwd()
     return folder.relative_to(here) if folder.is_relative_to(here) else folder
 
@@ -204,9 +221,12 @@ def _options(given: dict[str, Any]) -> str:
     return "".join(flags.values())
 
 
-def _record(table: "Table", file: Path) -> dict:
-    data = table.model_dump(by_alias=True, exclude_none=True)
-    return {"file": str(file), **data}
+def _record(table: "Table", file: Path) -> "RefittedTable":
+    from shadefit.records import RefittedTable, table_fields
+
+    kind = "best" if table.name.startswith("best/") else "refitted"
+    content = table.model_dump(by_alias=True, exclude_none=True)
+    return RefittedTable(**table_fields(table.name, kind, table, str(file)), content=content)
 
 
 def _row(table: "Table", file: Path) -> list[str]:

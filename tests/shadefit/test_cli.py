@@ -13,7 +13,8 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from coefficients import files
-from coefficients.catalogue import FOLDER, names, resolve
+from coefficients.catalogue import entries, resolve
+from coefficients.packaged import FOLDER, names
 from coefficients.table import Table, parse, serialise
 from quantities import problems
 from shadefit.cli import main
@@ -71,8 +72,10 @@ def test_evaluate_gives_every_leg_within_its_error(capsys, name):
         allowed = 5 * leg["error"] if leg_name == "monte_carlo" else leg["error"]
         assert abs(leg["value"] - exact["value"]) <= allowed + exact["error"]
     # The worst published table, P_s, is off by at most 0.14.
-    for table in result["tables"].values():
+    for table in result["tables"]:
         assert abs(table["difference"]) < 0.15
+    best = [each.name for each in entries(problems()[name]) if each.kind == "best"]
+    assert [table["label"] for table in result["tables"] if table["kind"] == "best"] == best
 
 
 def test_float64_is_set_whatever_the_environment_says():
@@ -92,8 +95,10 @@ def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
     arguments = ["--alpha", "0.35", "--theta-f", "1deg", "--theta-u", "30deg", "--phi", "0"]
     _, out, _ = run(capsys, "evaluate", "ps", *arguments, "--json")
     result = json.loads(out)
-    assert result["tables"]["published"]["value"] is None
-    assert "theta_f" in result["tables"]["published"]["reason"]
+    published = result["tables"][0]
+    assert published["label"] == "published"
+    assert published["value"] is None
+    assert "theta_f" in published["reason"]
     assert result["legs"]["closed_form"]["value"] > 0
 
 
@@ -102,14 +107,16 @@ def test_evaluate_shows_the_tables_that_are_asked_for(capsys, tmp_path):
     assert run(capsys, "export", "best/q-9", "-o", path)[0] == 0
     own = ["--table", "best/q-9", "--table", path]
     _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own, "--json")
-    tables = json.loads(out)["tables"]
-    assert list(tables) == ["published", "refitted", *own[1::2]]
-    assert tables["best/q-9"] == tables[path]
+    tables = {table["label"]: table for table in json.loads(out)["tables"]}
+    best = ["best/q-12", "best/q-12-log", "best/q-4", "best/q-5", "best/q-9"]
+    assert list(tables) == ["published", "refitted", *best, path]
+    assert tables["best/q-9"]["value"] == tables[path]["value"]
+    assert tables[path]["kind"] == "file" and tables[path]["file"] == path
     stated = table_of("best/q-9").errors
     assert stated is not None
     assert abs(tables[path]["difference"]) <= stated.off_grid.max
     _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own)
-    rows = [line.split() for line in out.splitlines() if line.strip().startswith(tuple(own[1::2]))]
+    rows = [line.split() for line in out.splitlines() if line.startswith(("best/q-9", path))]
     assert [float(row[1]) for row in rows] == pytest.approx([tables[path]["value"]] * 2)
 
 
@@ -157,9 +164,12 @@ def test_compare_measures_each_table_against_the_exact_integral(capsys):
     assert status == 0
     (comparison,) = json.loads(out)["comparisons"]
     published, refitted = comparison["tables"]
-    assert published["table"] == "published"
-    assert refitted["rms"] <= published["rms"]
-    assert refitted["rms_ratio"] == pytest.approx(refitted["rms"] / published["rms"])
+    assert published["label"] == "published"
+    before, after = published["errors"], refitted["errors"]
+    assert after["rms"] <= before["rms"]
+    assert refitted["ratios"]["rms"] == pytest.approx(after["rms"] / before["rms"])
+    assert refitted["ratios"]["max"] == pytest.approx(after["max"] / before["max"])
+    assert refitted["coefficients"] == table_of("q").coefficients
     assert comparison["largest_difference"]["value"] > 0
 
 
@@ -315,7 +325,7 @@ def test_any_density_is_evaluated_or_refused(capsys, value):
     status, out, err = run(capsys, *arguments)
     if status == 0:
         result = json.loads(out)
-        assert result["arguments"]["density"] == float(text)
+        assert result["where"]["density"] == float(text)
         assert 0 <= result["legs"]["closed_form"]["value"] <= 1
     else:
         assert status == 2

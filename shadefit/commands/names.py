@@ -1,0 +1,32 @@
+"""Checks of the names that a user gave, before a command imports what it runs.
+
+A misspelt name is refused at once: none of these checks waits for JAX.
+"""
+
+import sys
+from collections.abc import Sequence
+
+from shadefit.completion import QUANTITIES
+
+
+def require_tables(names: Sequence[str]) -> None:
+    """Raise ValueError for the first name that cannot be a table, a closed form, or a file."""
+    from coefficients.packaged import EXACT, is_file, is_packaged, unknown
+
+    for name in names:
+        if not (is_packaged(name) or is_file(name) or name.startswith(f"{EXACT}/")):
+            raise unknown(name, QUANTITIES)
+
+
+def require_quantities(names: Sequence[str], refusal: str, others: Sequence[str] = ()) -> None:
+    """Raise ValueError for the first name that is neither a built-in quantity nor one of `others`.
+
+    `refusal` begins the message: 'nothing is called'. Nothing is refused here once a user's problem
+    file is loaded, which may have declared the name.
+    """
+    if "quantities.registry" in sys.modules:
+        return
+    allowed = (*QUANTITIES, *others)
+    for name in names:
+        if name not in allowed:
+            raise ValueError(f"{refusal} {name!r}: allowed are {', '.join(allowed)}")
