@@ -34,7 +34,7 @@ test-slow: setup  ## the full refits and the large sweeps
 	$(BIN)/pytest -n 2 -m slow
 
 figures: setup  ## draw the figures of README.md and docs/gallery.md into docs/figures
-	$(BIN)/shadefit figures
+	$(BIN)/shadefit figures --out docs/figures
 
 report: setup  ## write build/report.html: every table's worth, the figures, and an explorer
 	$(BIN)/shadefit report

@@ -1,5 +1,6 @@
 """The command line: what it prints, what it refuses, and that refusing leaves nothing behind."""
 
+import inspect
 import json
 import math
 import os
@@ -12,14 +13,19 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from coefficients import files
+from coefficients import files, packaged
 from coefficients.catalogue import entries, resolve
 from coefficients.packaged import FOLDER, names
 from coefficients.table import Table, parse, serialise
 from quantities import problems
 from shadefit.cli import main
 from shadefit.commands import refit
+from shadefit.commands.ambient import ambient
+from shadefit.commands.figures import figures
 from shadefit.commands.options import angle
+from shadefit.commands.render import render
+from shadefit.commands.report import report
+from shadefit.commands.search import search
 
 NAMES = names()
 REFERENCES = {name: problem.reference for name, problem in problems().items()}
@@ -157,6 +163,30 @@ def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
         assert [table["file"] for table in json.loads(out)["tables"]] == list(map(str, said))
     assert written == own * 2
     assert not list(tmp_path.iterdir())
+
+
+def test_an_installed_package_is_not_written_into(capsys, monkeypatch):
+    monkeypatch.setattr(packaged, "in_checkout", lambda: False)
+    for name in ("q", "best/q-4"):
+        said = refuses(capsys, "refit", name)
+        assert f"{name} comes with an installed package: give a folder by --out" in said
+
+
+def test_a_checkout_is_known_by_its_project_file(monkeypatch, tmp_path):
+    assert packaged.in_checkout()
+    monkeypatch.setattr(packaged, "FOLDER", tmp_path / "site-packages" / "coefficients" / "tables")
+    assert not packaged.in_checkout()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [ambient, figures, refit.refit, render, report, search],
+    ids=lambda each: each.__name__,
+)
+def test_no_default_output_is_a_tracked_file(command):
+    default = inspect.signature(command).parameters["out"].default
+    # A refit replaces its table in a checkout, and needs --out elsewhere.
+    assert default is None if command is refit.refit else default.parts[0] == "build"
 
 
 def test_compare_measures_each_table_against_the_exact_integral(capsys):

@@ -9,13 +9,16 @@ from fitting import Goal
 from quantities import problem
 from quantities.fuzz.supplement import RATIONAL_PS
 from shadefit.commands.search import search
+from shadefit.records import SearchOutput
 
 GOAL = Goal("l2", rounding="float32")
 
 
 def run(capsys, folder, *, rounding="float32"):
     search("q", budget=5, norm="l2", rounding=rounding, out=folder, json=True)
-    return json.loads(capsys.readouterr().out)
+    found = json.loads(capsys.readouterr().out)
+    SearchOutput.model_validate(found)
+    return found
 
 
 def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, capsys, monkeypatch):

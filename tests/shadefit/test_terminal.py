@@ -78,7 +78,7 @@ def test_a_note_is_wrapped_and_an_empty_cell_below_left_out(capsys):
         "title", ["name", "rms", "at"], [["a", "1", ""], ["b", "2", "x 1"]], "word " * 40, 1
     )
     lines = capsys.readouterr().out.splitlines()
-    assert lines[:6] == ["title", "name  rms", "─────────", "a       1", "b       2", "    at x 1"]
+    assert lines[:6] == ["title", "name  rms", "─" * 10, "a       1", "b       2", "    at x 1"]
     assert max(map(len, lines)) <= 100
 
 
