@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup refit test test-slow check figures report bench format lock clean
+.PHONY: help setup refit test test-slow test-wheel check figures report bench format lock clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -32,6 +32,9 @@ test: check  ## checks, then the default tests
 
 test-slow: setup  ## the full refits and the large sweeps
 	$(BIN)/pytest -n 2 -m slow
+
+test-wheel: setup  ## build the packages, install them into an empty environment, and test them there
+	$(BIN)/pytest -m wheel tests/test_wheel.py
 
 figures: setup  ## draw the figures of README.md and docs/gallery.md into docs/figures
 	$(BIN)/shadefit figures --out docs/figures
