@@ -24,6 +24,20 @@ def test_the_lock_is_within_the_ranges():
         assert locked[each.name] in each.specifier
 
 
+def test_the_generator_of_the_site_is_locked_too():
+    docs = PROJECT["optional-dependencies"]["docs"]
+    lines = (ROOT / "requirements-docs.in").read_text().splitlines()
+    assert [line for line in lines if not line.startswith("#")] == docs
+    locked = pins("requirements-docs.lock")
+    for each in map(Requirement, docs):
+        assert locked[each.name] in each.specifier
+    # What both have is the same, so that one may be installed after the other.
+    shared = pins("requirements.lock")
+    assert {name: locked[name] for name in locked.keys() & shared.keys()} == {
+        name: shared[name] for name in locked.keys() & shared.keys()
+    }
+
+
 def test_no_range_is_wider_than_what_the_tests_run_with():
     locked = pins("requirements.lock")
     for each in map(Requirement, PROJECT["dependencies"]):
