@@ -23,7 +23,8 @@ release = version = PROJECT["version"]
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "site_pages"]
 root_doc = "README"
 include_patterns = ["*.md", "docs/**"]
-exclude_patterns = ["docs/site/*.py"]
+# Folders without pages: they are not searched.
+exclude_patterns = [".*", "build", "tests", "docs/site/*.py"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 
 myst_heading_anchors = 4

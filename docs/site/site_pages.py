@@ -58,10 +58,12 @@ def escape_bars(_app: Sphinx, _kind: str, _name: str, _object: Any, _how: Any, l
 
 
 def shorten_defaults(
-    _app: Sphinx, _kind: str, _name: str, _object: Any, _how: Any, signature: str, returns: str
-) -> tuple[str, str]:
+    _app: Sphinx, _kind: str, _name: str, _object: Any, _how: Any, given: str | None, returns: Any
+) -> tuple[str, Any] | None:
     """Write '...' for a default value that has no literal, such as a function."""
-    return re.sub(r"<[\w ]+ .*?>(?=[,)])", "...", signature or ""), returns
+    if not given or "=" not in given:
+        return None
+    return re.sub(r"= <[\w ]+ .*?>(?=[,)])", "= ...", given), returns
 
 
 def write_start(app: Sphinx, error: Exception | None) -> None:
