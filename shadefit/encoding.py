@@ -60,4 +60,4 @@ def _replacement(error: UnicodeError) -> tuple[str, int]:
     follower = error.object[error.end : error.end + 1]
     follower = follower if follower.isascii() and follower.isalnum() else ""
     replaced = ascii_text(lacking + follower)
-    return replaced.removesuffix(follower), error.end
+    return replaced.removesuffix(follower) or "?", error.end

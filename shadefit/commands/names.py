@@ -10,7 +10,12 @@ from shadefit.completion import QUANTITIES
 
 
 def require_tables(names: Sequence[str]) -> None:
-    """Raise ValueError for the first name that cannot be a table, a closed form, or a file."""
+    """Raise ValueError for the first name that cannot be a table, a closed form, or a file.
+
+    Nothing is refused here once a user's problem file is loaded.
+    """
+    if _is_extended():
+        return
     from coefficients.packaged import EXACT, is_file, is_packaged, unknown
 
     for name in names:
@@ -22,11 +27,16 @@ def require_quantities(names: Sequence[str], refusal: str, others: Sequence[str]
     """Raise ValueError for the first name that is neither a built-in quantity nor one of `others`.
 
     `refusal` begins the message: 'nothing is called'. Nothing is refused here once a user's problem
-    file is loaded, which may have declared the name.
+    file is loaded.
     """
-    if "quantities.registry" in sys.modules:
+    if _is_extended():
         return
     allowed = (*QUANTITIES, *others)
     for name in names:
         if name not in allowed:
             raise ValueError(f"{refusal} {name!r}: allowed are {', '.join(allowed)}")
+
+
+def _is_extended() -> bool:
+    """Return whether a user's problem file is loaded, so that there may be other names."""
+    return "quantities.registry" in sys.modules

@@ -22,6 +22,7 @@ from shadefit.encoding import shown, shown_json
         ("──", "--"),
         ("c₃ − d²", "c3 - d^2"),
         ("漢", "?"),
+        ("\u200b", "?"),
         ("plain", "plain"),
     ],
 )
