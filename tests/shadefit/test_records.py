@@ -54,16 +54,14 @@ def test_the_documentation_names_every_command_and_field():
     "arguments",
     [
         ["list"],
-        ["refit", "q", "--grid", "9", "--out", "FOLDER"],
         ["evaluate", "q", "--density", "0.3"],
-        ["verify", "q", "exact/q", "--to", "python"],
+        ["verify", "q", "--to", "python"],
         ["cost", "exact/ps"],
     ],
     ids=lambda arguments: " ".join(arguments[:2]),
 )
-def test_tables_have_one_shape_in_every_command(capsys, tmp_path, arguments):
-    given = [each.replace("FOLDER", str(tmp_path)) for each in arguments]
-    found = printed(capsys, *given)
+def test_tables_have_one_shape_in_every_command(capsys, arguments):
+    found = printed(capsys, *arguments)
     assert found["tables"]
     for table in found["tables"]:
         assert set(TABLE) <= set(table)
@@ -73,6 +71,7 @@ def test_tables_have_one_shape_in_every_command(capsys, tmp_path, arguments):
 def test_a_refit_holds_the_whole_table(capsys, tmp_path):
     (table,) = printed(capsys, "refit", "q", "--grid", "9", "--out", str(tmp_path))["tables"]
     file = tmp_path / "q.json"
+    assert set(table) == {*TABLE, "content"}
     assert table["file"] == str(file)
     assert table["content"] == json.loads(file.read_text())
     assert table["errors"] == table["content"]["errors"]["off_grid"]
