@@ -5,6 +5,7 @@ A misspelt name is refused at once: none of these checks waits for JAX.
 
 import sys
 from collections.abc import Sequence
+from importlib.metadata import entry_points
 
 from shadefit.completion import QUANTITIES
 
@@ -12,7 +13,7 @@ from shadefit.completion import QUANTITIES
 def require_tables(names: Sequence[str]) -> None:
     """Raise ValueError for the first name that cannot be a table, a closed form, or a file.
 
-    Nothing is refused here once a user's problem file is loaded.
+    Nothing is refused here if there may be a user's quantities.
     """
     if _is_extended():
         return
@@ -26,8 +27,7 @@ def require_tables(names: Sequence[str]) -> None:
 def require_quantities(names: Sequence[str], refusal: str, others: Sequence[str] = ()) -> None:
     """Raise ValueError for the first name that is neither a built-in quantity nor one of `others`.
 
-    `refusal` begins the message: 'nothing is called'. Nothing is refused here once a user's problem
-    file is loaded.
+    `refusal` begins the message: 'nothing is called'. Nothing is refused here if there may be a user's quantities.
     """
     if _is_extended():
         return
@@ -38,5 +38,5 @@ def require_quantities(names: Sequence[str], refusal: str, others: Sequence[str]
 
 
 def _is_extended() -> bool:
-    """Return whether a user's problem file is loaded, so that there may be other names."""
-    return "quantities.registry" in sys.modules
+    """Return whether there may be other quantities, of a user's file or an installed package."""
+    return "quantities.registry" in sys.modules or bool(entry_points(group="shadefit.problems"))
