@@ -63,11 +63,14 @@ def is_packaged(name: str) -> bool:
     return name in names() or name.removesuffix(AS_PRINTED) in files()
 
 
-def unknown(name: str, quantities: Iterable[str]) -> ValueError:
-    """Return the error for a name that no table has. `quantities` are the names of all."""
+def unknown(name: str, quantities: Iterable[str], declared: Iterable[str] = ()) -> ValueError:
+    """Return the error for a name that no table has.
+
+    `quantities` are the names of all, `declared` those of tables that are not packaged.
+    """
     every = list(quantities)
     public = [each for each in (f"published/{owner}" for owner in every) if each in files()]
-    allowed = ", ".join([*every, *public, *names_of_best()])
+    allowed = ", ".join([*every, *public, *declared, *names_of_best()])
     return ValueError(f"no table is called {name!r}: allowed are {allowed}, or a .json file's path")
 
 

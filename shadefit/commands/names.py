@@ -27,7 +27,8 @@ def require_tables(names: Sequence[str]) -> None:
 def require_quantities(names: Sequence[str], refusal: str, others: Sequence[str] = ()) -> None:
     """Raise ValueError for the first name that is neither a built-in quantity nor one of `others`.
 
-    `refusal` begins the message: 'nothing is called'. Nothing is refused here if there may be a user's quantities.
+    `refusal` begins the message: 'nothing is called'. Nothing is refused here if there may be a
+    user's quantities.
     """
     if _is_extended():
         return
