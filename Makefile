@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup refit test test-slow check figures report bench format lock clean
+.PHONY: help setup refit test test-slow test-wheel check figures docs report bench format lock clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -33,8 +33,23 @@ test: check  ## checks, then the default tests
 test-slow: setup  ## the full refits and the large sweeps
 	$(BIN)/pytest -n 2 -m slow
 
+test-wheel: setup  ## build the packages, install them into an empty environment, and test them there
+	$(BIN)/pytest -m wheel tests/test_wheel.py
+
 figures: setup  ## draw the figures of README.md and docs/gallery.md into docs/figures
-	$(BIN)/shadefit figures
+	$(BIN)/shadefit figures --out docs/figures
+
+docs: .venv/.docs  ## build the documentation site into build/site, and check its links
+	rm -rf build/site
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -b html -c docs/site \
+	    -d build/doctrees . build/site
+	$(BIN)/shadefit report --out build/site/explorer.html
+	$(BIN)/python docs/site/check_links.py build/site
+
+.venv/.docs: .venv/.ready requirements-docs.lock
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
+	    -r requirements-docs.lock
+	touch $@
 
 report: setup  ## write build/report.html: every table's worth, the figures, and an explorer
 	$(BIN)/shadefit report
@@ -55,6 +70,9 @@ lock: setup  ## resolve the locked dependencies anew
 	$(BIN)/uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
 	    --no-emit-index-url --no-emit-find-links --python-version 3.11 --extra dev \
 	    pyproject.toml -o requirements.lock
+	$(BIN)/uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
+	    --no-emit-index-url --no-emit-find-links --python-version 3.11 -c requirements.lock \
+	    requirements-docs.in -o requirements-docs.lock
 
 clean:  ## remove the environment and caches
 	rm -rf .venv .pytest_cache .ruff_cache .hypothesis *.egg-info

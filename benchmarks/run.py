@@ -2,7 +2,8 @@
 
 (a) The time of `shadefit refit all` at 65×65 from a cold start, imports and compilation included,
 compared with that of the same task in plain NumPy and SciPy (plain_scipy.py). (b) The evaluations
-per second of P_s by its closed form, compared with quadrature of its definition.
+per second of P_s by its closed form, compared with quadrature of its definition. (c) The time until
+commands that need no JAX have ended, compared with that of an empty Python program.
 """
 
 import argparse
@@ -51,7 +52,7 @@ def refit_all(folder: Path) -> dict:
     command = [sys.executable, "-c", code, "refit", "all", "--out", str(folder), "--json"]
     wall, processor, memory, text = timed(command)
     tables = json.loads(text)["tables"]
-    rms = {table["quantity"]: table["errors"]["off_grid"]["rms"] for table in tables}
+    rms = {table["quantity"]: table["errors"]["rms"] for table in tables}
     return {"seconds": wall, "processor_seconds": processor, "mebibytes": memory, "rms": rms}
 
 
@@ -131,6 +132,20 @@ def throughput() -> dict:
     return rates
 
 
+def startup(repeat: int = 7) -> dict:
+    """Return the least time in s of an empty program and of commands that need no JAX."""
+    command = "from shadefit.cli import main; main()"
+    programs = {
+        "python -c pass": ["-c", "pass"],
+        "shadefit --help": ["-c", command, "--help"],
+        "shadefit list": ["-c", command, "list"],
+    }
+    return {
+        name: min(timed([sys.executable, *arguments])[0] for _ in range(repeat))
+        for name, arguments in programs.items()
+    }
+
+
 def show(found: dict) -> None:
     ours, theirs = found["refit"], found["plain"]
     print(f"load average at the start {found['load']:.2f} on {os.cpu_count()} processors\n")
@@ -147,6 +162,10 @@ def show(found: dict) -> None:
     last = list(found["throughput"].values())[-1]
     for name, each in found["throughput"].items():
         print(f"    {name:<42} {each:>14.4g} {each / last:>12.4g}")
+    print(f"\n{'(c) start':<46} {'seconds':>14} {'to the first':>12}")
+    first = next(iter(found["startup"].values()))
+    for name, each in found["startup"].items():
+        print(f"    {name:<42} {each:>14.3f} {each / first:>12.3g}")
 
 
 def main() -> None:
@@ -165,6 +184,7 @@ def main() -> None:
         "plain": theirs,
         "ratio": theirs["seconds"] / ours["seconds"],
         "throughput": throughput(),
+        "startup": startup(),
     }
     if options.json:
         print(json.dumps(found, indent=2))

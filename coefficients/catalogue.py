@@ -4,18 +4,29 @@ A name stands for a packaged table (below `coefficients/tables`), for a table in
 for a closed form. The command line resolves it once, into an `Entry`, and passes the entry on.
 """
 
-import os
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
 from coefficients.agreement import fitted_form
 from coefficients.expression import form_of, reference_of, require_same
+from coefficients.packaged import (
+    AS_PRINTED,
+    EXACT,
+    FOLDER,
+    Kind,
+    corrected,
+    files,
+    is_file,
+    is_packaged,
+    kind_of,
+    names,
+    packaged_table,
+    unknown,
+)
 from coefficients.record import published_table
 from coefficients.table import Table, read
 from fitting import FittedForm, Form
@@ -24,14 +35,6 @@ from programs.functions import Function
 from quantities import Problem, problem, problems
 from quantities.calling_convention import Argument, CallingConvention, renamed
 from quantities.problem import ExactCode
-
-FOLDER = Path(__file__).parent / "tables"
-# Behind the name of a published table: the table as it is printed, without corrections.
-AS_PRINTED = "@printed"
-EXACT = "exact"
-
-Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
-_KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,17 +125,13 @@ def resolve(name: str) -> Entry:
     declared = _declared()
     if name in declared:
         return declared[name]
-    if name in names() or name.removesuffix(AS_PRINTED) in _files():
+    if is_packaged(name):
         return _kept(name)
-    # For a name that is too long, os.path.isfile returns false; Path.is_file raises an error.
-    is_file = name.endswith(".json") or os.path.isfile(name)
-    if name.startswith(f"{EXACT}/") and not is_file:
+    if name.startswith(f"{EXACT}/") and not is_file(name):
         return _closed_form(name)
-    if is_file:
+    if is_file(name):
         return entry_of(corrected(read(Path(name))), name)
-    raise ValueError(
-        f"no table is called {name!r}: allowed are {', '.join(_allowed())}, or a .json file's path"
-    )
+    raise unknown(name, problems(), declared)
 
 
 def entry_of(table: Table, name: str) -> Entry:
@@ -199,7 +198,7 @@ def published(owner: Problem) -> Entry | None:
     Of several, it is the first.
     """
     name = f"published/{owner.name}"
-    return _kept(name) if name in _files() else next(iter(_declared(owner).values()), None)
+    return _kept(name) if name in files() else next(iter(_declared(owner).values()), None)
 
 
 def printed(owner: Problem) -> Entry | None:
@@ -210,7 +209,7 @@ def printed(owner: Problem) -> Entry | None:
 
 def refitted(owner: Problem) -> Entry | None:
     """Return the refitted table of a quantity; None if there is none."""
-    return _kept(owner.name) if owner.name in _files() else None
+    return _kept(owner.name) if owner.name in files() else None
 
 
 def with_published() -> list[Problem]:
@@ -239,85 +238,27 @@ def _published_entry(owner: Problem, number: int) -> Entry:
     return Entry(name, "published", owner, table, fitted_form(table, owner))
 
 
-@lru_cache(maxsize=1)
-def names() -> tuple[str, ...]:
-    """List the names of the packaged tables: refitted, best, published, and as printed."""
-    known = list(_files())
-    printed = [
-        f"{name}{AS_PRINTED}"
-        for name in known
-        if name.startswith("published/") and corrected(_read(name)) != _read(name)
-    ]
-    return (*known, *printed)
-
-
-def names_of_best() -> list[str]:
-    """List the names of the best tables, such as 'best/q-9'. Their forms are not the published."""
-    return [name for name in _files() if name.startswith("best/")]
-
-
 def is_kept(name: str) -> bool:
     """Tell whether a name is that of a table or a quantity whose tables are kept here."""
-    return name in _files() or (name in problems() and bool(problem(name).topic))
+    return name in files() or (name in problems() and bool(problem(name).topic))
 
 
 def path_of(name: str) -> Path:
     """Return the file of a packaged table, or the file where a quantity's refit would be."""
-    if name in _files():
-        return _files()[name]
+    if name in files():
+        return files()[name]
     return FOLDER / problem(name).topic / "refit" / f"{name}.json"
-
-
-def corrected(table: Table) -> Table:
-    """Return a published table with its errata applied; other tables are returned unchanged.
-
-    An erratum that is applied loses its `exchange_rows`, so that it is not applied a second time if
-    the result is written and read again.
-    """
-    if table.publication is None:
-        return table
-    rows = list(range(len(table.coefficients)))
-    for erratum in table.publication.errata:
-        if erratum.exchange_rows is not None:
-            first, second = erratum.exchange_rows
-            if not (0 <= first < len(rows) and 0 <= second < len(rows)):
-                raise ValueError(f"erratum {erratum.id} exchanges rows that do not exist")
-            rows[first], rows[second] = rows[second], rows[first]
-    applied = [each.model_copy(update={"exchange_rows": None}) for each in table.publication.errata]
-    return table.model_copy(
-        update={
-            "coefficients": [table.coefficients[row] for row in rows],
-            "publication": table.publication.model_copy(update={"errata": applied}),
-        }
-    )
-
-
-@lru_cache(maxsize=1)
-def _files() -> dict[str, Path]:
-    """Map the names of the packaged tables to their files: refitted, best, then published."""
-    found: dict[str, Path] = {}
-    for folder, prefix in (("refit", ""), ("best", "best/"), ("published", "published/")):
-        paths = sorted(FOLDER.glob(f"*/{folder}/*.json"), key=lambda path: path.name)
-        found |= {f"{prefix}{path.stem}": path for path in paths}
-    return found
-
-
-@lru_cache(maxsize=256)
-def _read(name: str) -> Table:
-    return read(_files()[name])
 
 
 @lru_cache(maxsize=256)
 def _kept(name: str) -> Entry:
     """Return a packaged table. Raises ValueError for '@printed' if it is not a published one."""
     stem = name.removesuffix(AS_PRINTED)
-    kind = _KINDS[_files()[stem].parent.name]
-    if stem != name and kind != "published":
+    if stem != name and kind_of(stem) != "published":
         raise ValueError(f"{stem} is not published: allowed is {stem} without {AS_PRINTED}")
-    table = _read(stem) if stem != name else corrected(_read(stem))
+    table = packaged_table(name)
     owner = problem(table.quantity)
-    shown: Kind = "printed" if stem != name else kind
-    return Entry(name, shown, owner, table, fitted_form(table, owner))
+    return Entry(name, kind_of(name), owner, table, fitted_form(table, owner))
 
 
 def _closed_form(name: str) -> Entry:
@@ -328,10 +269,3 @@ def _closed_form(name: str) -> Entry:
             "names"
         )
     return Entry(name, "exact", known[name])
-
-
-def _allowed() -> Sequence[str]:
-    """List the names that an error message offers: refitted, published and best tables."""
-    owners = problems().values()
-    public = [entry.name for owner in with_published() if (entry := published(owner))]
-    return [*(owner.name for owner in owners), *public, *names_of_best()]

@@ -66,31 +66,6 @@ def compare(labelled: Sequence[tuple[str, Entry]]) -> Comparison:
     return Comparison(quantities.pop(), domain, contestants, apart.largest, apart.where)
 
 
-def as_json(comparison: Comparison) -> dict:
-    """Return a comparison as plain JSON values, coefficients included."""
-    return {
-        "quantity": comparison.quantity,
-        "domain": {axis.name: [axis.lower, axis.upper] for axis in comparison.domain.axes},
-        "points": comparison.contestants[0].errors.points,
-        "tables": [
-            {
-                "table": each.label,
-                "form": each.table.form,
-                "equation": each.table.equation,
-                "rms": each.errors.rms,
-                "max": each.errors.largest,
-                "where": each.errors.where,
-                "rms_ratio": each.rms_ratio,
-                "max_ratio": each.largest_ratio,
-                "coefficients": each.table.coefficients,
-            }
-            for each in comparison.contestants
-        ],
-        "coefficient_names": comparison.contestants[0].table.coefficient_names,
-        "largest_difference": {"value": comparison.difference, "where": comparison.where},
-    }
-
-
 def coefficient_rows(comparison: Comparison) -> list[tuple[str, list[float]]]:
     """Return each coefficient's name and its values in all tables, which must be of one form."""
     first = comparison.contestants[0].table

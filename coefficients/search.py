@@ -14,10 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.catalogue import Entry, entries, published
+from coefficients.catalogue import Entry, entries, published, resolve
 from coefficients.exported_code import operations_of
 from coefficients.files import write_whole
 from coefficients.frontier import best_so_far, closed_form
+from coefficients.packaged import EXACT, Kind
 from coefficients.record import table_of
 from coefficients.table import Table, read, serialise
 from fitting import Form, Goal, common_domain, judge
@@ -26,22 +27,31 @@ from fitting.linearity import program_of
 from quantities import Problem
 from quantities.loader import option_for
 
+# Takes what is done now, the number of candidates that were tried, and the number of all to try.
+Progress = Callable[[str, int, int], None]
+
 
 @dataclass(frozen=True)
 class Found:
     """A table with its operations a call and its rms and largest error.
 
-    `form` is the name of the form ('exact' for the closed form), `coefficients` their number, and
-    `file` the table's file. The errors of a candidate are at points that its fit did not use.
+    `form` is the name of the form, `equation` what it computes, `coefficients` their number, and
+    `file` the table's file; the closed form has no `form`, and neither it nor a packaged table has
+    a `file`. The errors of a candidate are at `points` points that its fit did not use; `where` has
+    the largest. Both are None for the closed form.
     """
 
     name: str
-    form: str
+    kind: Kind
+    form: str | None
+    equation: str
     coefficients: int
     operations: int
     rms: float
     largest: float
-    file: str
+    where: dict[str, float] | None
+    points: int | None
+    file: str | None
 
 
 @dataclass(frozen=True)
@@ -77,22 +87,31 @@ class Search:
     budget: int | None = None
     lower: Mapping[str, float] | None = None
 
-    def run(self, progress: Callable[[str], None] = lambda _: None) -> Result:
-        """Fit every candidate within the budget. Raises ValueError if no fit succeeds."""
+    def run(self, progress: Progress = lambda *_: None) -> Result:
+        """Fit every candidate within the budget. Raises ValueError if no fit succeeds.
+
+        `progress` is called with what is done now, the number of candidates that were tried in this
+        run, and the number of those to try. Candidates of an earlier run do not count.
+        """
         found: list[Found] = []
-        refused, last = 0, None
-        for form in self.candidates():
-
-            def tell(stage: str, done: int = len(found)) -> None:
-                progress(f"{done} forms; {stage}")
-
-            # Operations are counted without a fit, so that forms beyond the budget cost no time.
-            if self.budget is not None and self._blank_cost(form) > self.budget:
-                continue
-            if self._refusal(form).is_file():
+        refused, tried, last = 0, 0, None
+        # Operations are counted without a fit, so that forms beyond the budget cost no time.
+        chosen = [form for form in self.candidates() if self._is_within_budget(form)]
+        made = [self._made_before(form) for form in chosen]
+        settled = [self._refusal(form).is_file() for form in chosen]
+        total = sum(not no and yes is None for no, yes in zip(settled, made, strict=True))
+        for form, no, before in zip(chosen, settled, made, strict=True):
+            if no:
                 refused += 1
                 continue
-            table = self._made_before(form) or self._fitted(form, tell)
+
+            def tell(stage: str, done: int = tried) -> None:
+                progress(stage, done, total)
+
+            table = before
+            if table is None:
+                table = self._fitted(form, tell)
+                tried += 1
             if table is None:
                 refused += 1
                 continue
@@ -130,6 +149,9 @@ class Search:
         shape = repr(program_of(form).steps) if form.shape is None else form.shape
         text = json.dumps([shape, asdict(self.goal)], sort_keys=True)
         return f"{form.name}-{hashlib.sha256(text.encode()).hexdigest()[:10]}"
+
+    def _is_within_budget(self, form: Form) -> bool:
+        return self.budget is None or self._blank_cost(form) <= self.budget
 
     def _blank_cost(self, form: Form) -> int:
         """Count the operations of a form that is not fitted yet.
@@ -173,11 +195,15 @@ class Search:
         entry = Entry(table.name, "file", self.owner, table, fitted)
         return Found(
             table.name,
+            "file",
             table.form,
+            table.equation,
             table.size,
             operations_of(entry),
             errors.off_grid.rms,
             errors.off_grid.max,
+            errors.off_grid.where,
+            errors.off_grid.points,
             str(self.out / f"{table.name}.json"),
         )
 
@@ -193,17 +219,33 @@ class Search:
         errors = judge(fitted, common_domain([fitted.form, candidate]))
         return Found(
             entry.name,
+            entry.kind,
             table.form,
+            table.equation,
             table.size,
             operations_of(entry),
             errors.rms,
             errors.largest,
-            "coefficients",
+            errors.where,
+            errors.points,
+            None,
         )
 
     def _closed_form(self) -> list[Found]:
         """Return a list with the closed form; it is empty if there is none."""
         return [
-            Found(mark.name, "exact", 0, mark.operations, mark.rms, mark.largest, "")
+            Found(
+                mark.name,
+                "exact",
+                None,
+                resolve(f"{EXACT}/{self.owner.name}").equation,
+                0,
+                mark.operations,
+                mark.rms,
+                mark.largest,
+                None,
+                None,
+                None,
+            )
             for mark in closed_form(self.owner)
         ]

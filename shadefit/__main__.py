@@ -33,8 +33,13 @@ def _wait_for_interruption(reader: int) -> None:
     temporary = sys.modules.get("programs.toolchains.temporary")
     if temporary is not None:
         temporary.discard_unfinished()
+    progress = sys.modules.get("shadefit.progress")
+    if progress is not None:
+        progress.clear()
     kept = _KEPT.get(next(iter(sys.argv[1:]), ""), "no file is half written")
-    cursor = _SHOW_CURSOR if sys.stderr.isatty() else ""
+    # The terminal has written ^C at the start of the line, which the message replaces.
+    codes = "\r" if os.environ.get("TERM") == "dumb" else _SHOW_CURSOR
+    cursor = codes if sys.stderr.isatty() else ""
     os.write(2, f"{cursor}shadefit: interrupted; {kept}\n".encode())
     os._exit(_INTERRUPTED)
 

@@ -25,6 +25,7 @@ from shadefit.commands.render import render
 from shadefit.commands.report import report
 from shadefit.commands.search import search
 from shadefit.commands.verify import verify
+from shadefit.encoding import install
 
 app = typer.Typer(
     name="shadefit",
@@ -144,6 +145,7 @@ def main(arguments: list[str] | None = None) -> None:
     os.environ["JAX_ENABLE_X64"] = "1"
     # With more threads, the order of sums, and so their last digits, would depend on the machine.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    install()
     given = sys.argv[1:] if arguments is None else arguments
     try:
         status = app(given or ["--help"], standalone_mode=False)

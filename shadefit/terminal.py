@@ -1,46 +1,56 @@
-"""What the commands print: tables on a terminal, JSON, and progress on standard error."""
+"""What the commands print: tables on a terminal, and JSON."""
 
 import json
+import shutil
 import sys
-from collections.abc import Generator
-from contextlib import contextmanager
-from typing import Any
 
-from rich.box import SIMPLE_HEAD
+from pydantic import BaseModel
 from rich.console import Console
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table as Grid
+from rich.text import Text
+
+from shadefit.encoding import shown, shown_json
+from shadefit.layout import RULE, laid_out, wrapped
+
+# Without a terminal there is no width to fit into: every table has its columns side by side.
+_UNLIMITED = 10_000
+# Notes are not wider than this, because long lines are hard to read.
+_WIDEST_NOTE = 100
 
 
-def print_json(value: Any) -> None:
+def print_json(output: BaseModel) -> None:
     """Print one JSON object. Numbers have all digits that are needed to read them back exactly."""
-    print(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
+    value = output.model_dump(mode="json", by_alias=True)
+    print(shown_json(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False)))
 
 
-def print_table(title: str, columns: list[str], rows: list[list[str]], note: str = "") -> None:
-    """Print a table with a note below it. The first column is left-aligned, the others right."""
-    grid = Grid(title=title, title_justify="left", box=SIMPLE_HEAD, caption=note or None)
-    grid.caption_justify = "left"
-    for index, column in enumerate(columns):
-        grid.add_column(column, justify="left" if index == 0 else "right", no_wrap=True)
-    for row in rows:
-        grid.add_row(*row)
-    # If the output is no terminal, there is no width to fit into: the table gets enough.
-    width = None if sys.stdout.isatty() else 200
-    Console(highlight=False, markup=False, width=width).print(grid)
+def print_table(
+    title: str, columns: list[str], rows: list[list[str]], note: str = "", below: int = 0
+) -> None:
+    """Print a table with a note below it, in the width of the terminal. No number is cut.
+
+    The last `below` columns are on a line of their own under each row: 'at alpha 0.15'. In such a
+    column an empty cell is left out.
+    """
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _UNLIMITED
+    header, lines = laid_out(
+        [shown(each) for each in columns],
+        [[shown(each) for each in row] for row in rows],
+        below,
+        width,
+    )
+    text = [(line, "italic") for line in wrapped(shown(title), width)]
+    text += [(line, "bold") for line in header]
+    if header:
+        text.append((shown(RULE) * max(map(len, [*header, *lines])), "dim"))
+    text += [(line, "") for line in lines]
+    if note:
+        text += [(line, "dim") for line in wrapped(shown(note), min(width, _WIDEST_NOTE))]
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    for line, style in text:
+        console.print(Text(line, style))
+    console.print()
 
 
 def place(where: dict[str, float]) -> str:
     """Write a point as text: 'alpha 0.15, theta_f 1.57'."""
     return ", ".join(f"{name} {value:.4g}" for name, value in where.items())
-
-
-@contextmanager
-def stages() -> Generator[Progress]:
-    """Show on standard error what a long command is doing. Show nothing if it is no terminal."""
-    console = Console(stderr=True)
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    with Progress(
-        *columns, console=console, transient=True, disable=not sys.stderr.isatty()
-    ) as progress:
-        yield progress

@@ -2,8 +2,8 @@
 
 The size of every divisor is bounded from below by a positive number. The operands of all other
 operations that are not defined everywhere are shown to be in their domains. Then every intermediate
-value is shown to be finite in float64. A proof is about exact arithmetic: a value that exactly is zero may be
-negative after rounding.
+value is shown to be finite in float64. A proof is about exact arithmetic: a value that exactly is
+zero may be negative after rounding.
 """
 
 from collections.abc import Iterator

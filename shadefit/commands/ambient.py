@@ -9,7 +9,7 @@ from shadefit.commands.options import Json
 
 
 def ambient(
-    out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("docs/figures"),
+    out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("build/figures"),
     json: Json = False,
 ) -> None:
     """Measure the errors of the ambient model, and its largest radiance in uniform light.
@@ -26,20 +26,24 @@ def run(out: Path, json: bool) -> None:
     from shadefit.ambient.errors import errors_with_phase_integral, model_errors
     from shadefit.ambient.radiances import materials_and_views, radiances
     from shadefit.ambient.sheet import draw_ambient
-    from shadefit.terminal import print_json, stages
+    from shadefit.progress import stages
+    from shadefit.records import AmbientOutput
+    from shadefit.terminal import print_json
 
     require_writable(out)
     path = out / "ambient.png"
     with stages() as progress:
-        task = progress.add_task("exact radiances by quadrature")
+        stage = progress.begin("exact radiances by quadrature", total=2)
         found = radiances(materials_and_views())
-        progress.update(task, description="picture")
+        stage.advance()
+        stage.show("picture")
         write_whole_bytes(path, draw_ambient())
     rows, with_integral = model_errors(found), errors_with_phase_integral(found)
     largest = largest_radiances(found)
     if json:
         record = {"points": len(found.points), "errors": rows, "energy": largest}
-        print_json({**record, "rms_without_symmetry": with_integral, "file": str(path)})
+        others = {"rms_without_symmetry": with_integral, "files": [str(path)]}
+        print_json(AmbientOutput.model_validate({**record, **others}))
         return
     _print_errors(rows, with_integral, list(found.models), len(found.points))
     _print_energy(largest, path)
@@ -70,6 +74,7 @@ def _print_errors(
         ],
         "White fibres, white base. rms by whose G, Q, R and P_s the model takes; lit p: exact "
         "ones, and the integral of p(u, v) over lights for 1 − P_s(v). Bias, worst: exact ones.",
+        below=1,
     )
 
 
@@ -78,7 +83,8 @@ def _print_energy(rows: list[dict], path: Path) -> None:
 
     print_table(
         "Largest radiance in uniform light of radiance one",
-        ["", "largest", "at"],
+        ["in", "largest", "at"],
         [[row["what"], f"{row['largest']:.4f}", place(row["where"])] for row in rows],
         f"Of the same points; {path}.",
+        below=1,
     )

@@ -75,7 +75,7 @@ def bake(
     from coefficients.lut.beside import coefficient_bytes, difference_from, tables_beside
     from coefficients.lut.files import EXTENSIONS
     from fitting import Domain, judge
-    from shadefit.terminal import stages
+    from shadefit.progress import stages
 
     counts = _size(size)
     made = _source(source)
@@ -85,7 +85,7 @@ def bake(
     path = out or default.with_suffix(f".{EXTENSIONS.get(format, format)}")
     require_writable_file(path)
     with stages() as progress:
-        progress.add_task(f"{source}: texels and errors", total=None)
+        progress.begin(f"{source}: texels and errors")
         lut = bake_lut(made.values, axes, counts, filter, texel, centres)
         data = write_lut(lut, format)
         where = Domain(made.owner.reference, axes)
@@ -233,7 +233,11 @@ def _show(report: dict[str, Any], json: bool) -> None:
     from shadefit.terminal import place, print_json, print_table
 
     if json:
-        print_json(report)
+        from shadefit.records import BakeOutput
+
+        errors = {key: report[key] for key in ("rms", "max", "where")}
+        rest = {key: value for key, value in report.items() if key not in errors}
+        print_json(BakeOutput.model_validate({"table": None, **rest, "errors": errors}))
         return
     size = "×".join(map(str, report["size"]))
     label = f"LUT {size}, {report['texel']}, {report['filter']}"

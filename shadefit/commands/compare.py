@@ -4,12 +4,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from shadefit.commands.names import require_tables
 from shadefit.commands.options import Json
 from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from coefficients.compare import Comparison
+    from shadefit.records import ComparisonRecord
 
 # Coefficients are printed only if there are at most this many. --json prints them all.
 PRINTED_COEFFICIENTS = 17
@@ -34,17 +36,44 @@ def compare(
 
 def run(names: list[str], json: bool) -> None:
     """Compare each table with the published one of its quantity."""
+    require_tables(names)
     from coefficients.catalogue import resolve, with_published
-    from coefficients.compare import as_json, compare
+    from coefficients.compare import compare
+    from shadefit.records import CompareOutput
     from shadefit.terminal import print_json
 
     chosen = [resolve(name) for name in names or [owner.name for owner in with_published()]]
-    comparisons = [compare(contestants(entry)) for entry in chosen]
+    labelled = [contestants(entry) for entry in chosen]
+    comparisons = [compare(each) for each in labelled]
     if json:
-        print_json({"comparisons": [as_json(comparison) for comparison in comparisons]})
+        records = [record(*each) for each in zip(comparisons, labelled, strict=True)]
+        print_json(CompareOutput(comparisons=records))
         return
     for comparison in comparisons:
         _print(comparison)
+
+
+def record(comparison: "Comparison", labelled: "list[tuple[str, Entry]]") -> "ComparisonRecord":
+    """Return a comparison of entries as it is printed by --json, coefficients included."""
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.records import ComparedTable, ComparisonRecord, LargestDifference, Ratios
+
+    tables = [
+        ComparedTable(
+            **entry_fields(entry, each.errors),
+            label=each.label,
+            ratios=Ratios(rms=each.rms_ratio, max=each.largest_ratio),
+            coefficients=each.table.coefficients,
+        )
+        for each, (_, entry) in zip(comparison.contestants, labelled, strict=True)
+    ]
+    return ComparisonRecord(
+        quantity=comparison.quantity,
+        domain={axis.name: [axis.lower, axis.upper] for axis in comparison.domain.axes},
+        tables=tables,
+        coefficient_names=comparison.contestants[0].table.coefficient_names,
+        largest_difference=LargestDifference(value=comparison.difference, where=comparison.where),
+    )
 
 
 def contestants(entry: "Entry") -> "list[tuple[str, Entry]]":
@@ -88,6 +117,7 @@ def _print(comparison: "Comparison") -> None:
         ],
         f"Measured for {domain}. The last differs from the first by at most "
         f"{comparison.difference:.3e}, at {place(comparison.where)}.",
+        below=1,
     )
     same = len({each.table.form for each in comparison.contestants}) == 1
     rows = coefficient_rows(comparison) if same else []

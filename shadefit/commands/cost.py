@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from shadefit.commands.names import require_tables
 from shadefit.commands.options import Json
 from shadefit.completion import complete_shader
 
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from programs import Cost, Function, Throughput
+    from shadefit.records import FunctionRecord, ThroughputRecord
 
 
 def cost(
@@ -30,9 +32,12 @@ def cost(
 
     The closed form is counted too if the table's form has two stages (ps).
     """
+    require_tables([table])
     from coefficients.catalogue import resolve
     from coefficients.exported_code import closed_form_beside, costs
     from programs import KINDS, measure_throughput
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.records import CostedTable, CostOutput
     from shadefit.terminal import print_json, print_table
 
     entry = resolve(table)
@@ -48,17 +53,18 @@ def cost(
             _record(when, function, counted[function.name], rates.get(function.name))
             for when, function in labelled
         ]
-        print_json({"name": table, "functions": record})
+        print_json(CostOutput(tables=[CostedTable(**entry_fields(entry), functions=record)]))
         return
     alone = entry.fitted is not None and beside is None
     note = "No exact form is exported beside it." if alone else ""
     print_table(
         f"{table}: operations",
-        ["function", "evaluated for", *KINDS, "fma", "operations", "weighted"],
+        ["function", *KINDS, "fma", "operations", "weighted", "for"],
         [_row(when, function.name, counted[function.name]) for when, function in labelled],
         "select: comparisons, selections, minima, maxima, roundings. sign: negations, absolute "
         "values; not among the operations. fma: additions that could take up a product, counted in "
         f"both. {note}".strip(),
+        below=1,
     )
     if rates:
         _print_rates(table, rates)
@@ -94,17 +100,29 @@ def _row(when: str, name: str, cost: "Cost") -> list[str]:
     from programs import KINDS
 
     kinds = [str(getattr(cost, kind)) for kind in (*KINDS, "fma", "operations", "weighted")]
-    return [name, when, *kinds]
+    return [name, *kinds, when]
 
 
-def _record(when: str, function: "Function", cost: "Cost", rate: "Throughput | None") -> dict:
+def _record(
+    when: str, function: "Function", cost: "Cost", rate: "Throughput | None"
+) -> "FunctionRecord":
     from dataclasses import asdict
 
-    return {
-        "function": function.name,
-        "evaluated_for": when,
-        **asdict(cost),
-        "operations": cost.operations,
-        "weighted": cost.weighted,
-        "throughput": None if rate is None else {**asdict(rate), "ratio": rate.ratio},
-    }
+    from shadefit.records import FunctionRecord
+
+    return FunctionRecord(
+        function=function.name,
+        evaluated_for=when,
+        operations=cost.operations,
+        weighted=cost.weighted,
+        kinds=asdict(cost),
+        throughput=None if rate is None else _rate(rate),
+    )
+
+
+def _rate(rate: "Throughput") -> "ThroughputRecord":
+    from dataclasses import asdict
+
+    from shadefit.records import ThroughputRecord
+
+    return ThroughputRecord.model_validate({**asdict(rate), "ratio": rate.ratio})

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from shadefit.commands.names import require_quantities, require_tables
 from shadefit.commands.options import Json, angle, checked, flag_of
 from shadefit.commands.point_files import csv_text, read_points, require_format, written
 from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
+    from coefficients.catalogue import Entry
     from fitting import FittedForm
     from integrals.reference import Axis, Estimate, Reference
     from quantities import Problem
@@ -55,10 +57,10 @@ def evaluate(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Evaluate an integral at one point, by all exact methods and by tables.
+    """Evaluate a quantity at one point, by all exact methods and by tables.
 
     The exact methods are closed form, quadrature and Monte Carlo, if they exist.
-    The tables are the published one, the refitted one, and those of --table.
+    The tables are the published, the refitted and the best ones, and those of --table.
 
     Each argument of the integral is an option:
     --alpha, --theta-f, --theta-u and --phi of ps; --density and --cos-v of g;
@@ -89,9 +91,13 @@ def run(
 ) -> None:
     """Evaluate the quantity `name` at the point that the options `given` state.
 
-    Prints the values of every leg, of the published table, of the refitted one, and of the tables
+    Prints the values of every leg, of the published, refitted and best tables, and of the tables
     that `extra` names.
     """
+    require_quantities([name], "no integral is called")
+    require_tables(extra)
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.records import EvaluatedTable, EvaluateOutput, Leg
     from shadefit.terminal import place, print_json, print_table
 
     owner = _owner(name)
@@ -108,26 +114,35 @@ def run(
         leg = _compiled(reference, leg_name, options if leg_name == "monte_carlo" else ())
         estimate = leg(*arguments.values())
         legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
-    exact = legs[reference.best_leg]["value"]
-    if math.isnan(exact):
+    # Data have no value between their points: only tables can be evaluated there.
+    exact = legs[reference.best_leg]["value"] if legs else None
+    if exact is not None and math.isnan(exact):
         raise ValueError(
             f"{owner.symbol} has no limit at {place(arguments)}, and no value: "
             "allowed are all other points of its domain"
         )
-    found = {label: _by_form(fitted, arguments, exact) for label, fitted in tables.items()}
+    found = {
+        label: _by_form(each.require_fitted(), arguments, exact) for label, each in tables.items()
+    }
     if json:
-        print_json({"quantity": name, "arguments": arguments, "legs": legs, "tables": found})
+        records = [
+            EvaluatedTable(**entry_fields(tables[label]), label=label, **each)
+            for label, each in found.items()
+        ]
+        exacts = {leg: Leg(**each) for leg, each in legs.items()}
+        print_json(EvaluateOutput(quantity=name, where=arguments, legs=exacts, tables=records))
         return
     rows = [
-        [leg_name.replace("_", " "), f"{leg['value']:.15g}", f"± {leg['error']:.1e}"]
+        [leg_name.replace("_", " "), f"{leg['value']:.15g}", f"± {leg['error']:.1e}", ""]
         for leg_name, leg in legs.items()
     ]
     print_table(
-        f"{owner.symbol} = {reference.definition}",
-        ["by", "value", "error"],
+        f"{owner.symbol} = {reference.definition}" if reference.definition else owner.symbol,
+        ["by", "value", "error", ""],
         rows + [[label, *_cells(entry)] for label, entry in found.items()],
         "Error: stated by the leg (Monte Carlo: one standard error); of a table, its distance "
         "from the exact value.",
+        below=1,
     )
 
 
@@ -138,6 +153,7 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     from coefficients.files import require_writable_file, write_whole_bytes
     from fitting import form_values
     from integrals.many_points import estimates_at_many
+    from shadefit.records import PointsOutput
     from shadefit.terminal import print_json
 
     owner = _owner(name)
@@ -146,10 +162,12 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
         require_writable_file(out)
     tables = _tables(owner, extra)
     points = read_points(file, owner.axes)
-    found = estimates_at_many(owner.reference, points)
     columns = {axis.name: points[:, k] for k, axis in enumerate(owner.axes)}
-    columns |= {"exact": np.asarray(found.value), "error": np.asarray(found.error)}
-    for label, fitted in tables.items():
+    if owner.reference.legs:
+        found = estimates_at_many(owner.reference, points)
+        columns |= {"exact": np.asarray(found.value), "error": np.asarray(found.error)}
+    for label, entry in tables.items():
+        fitted = entry.require_fitted()
         inside = [axis.contains(points[:, k]) for k, axis in enumerate(fitted.axes)]
         columns[label] = np.where(np.all(inside, axis=0), form_values(fitted, points), np.nan)
     if out is not None:
@@ -160,9 +178,15 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
             label: [value if math.isfinite(value) else None for value in values.tolist()]
             for label, values in columns.items()
         }
-        shown = {"columns": list(columns)} if out is not None else {"columns": rows}
-        file_shown = None if out is None else str(out)
-        print_json({"quantity": name, "points": len(points), "file": file_shown, **shown})
+        print_json(
+            PointsOutput(
+                quantity=name,
+                points=len(points),
+                file=None if out is None else str(out),
+                columns=list(columns),
+                values=rows if out is None else None,
+            )
+        )
     elif out is None:
         print(csv_text(columns), end="")
     else:
@@ -225,26 +249,28 @@ def _compiled(
     return jax.jit(functools.partial(reference.legs[leg], **dict(options)))
 
 
-def _tables(owner: "Problem", extra: list[str]) -> "dict[str, FittedForm]":
-    """Return the fitted forms of the tables to show, by label.
+def _tables(owner: "Problem", extra: list[str]) -> "dict[str, Entry]":
+    """Return the tables to show, by label: published, refitted and best ones, and those of `extra`.
 
     Raises ValueError if a table that `extra` names belongs to another quantity.
     """
-    from coefficients.catalogue import published, refitted, resolve
+    from coefficients.catalogue import entries, published, refitted, resolve
 
     known = {"published": published(owner), "refitted": refitted(owner)}
-    found = {label: each.require_fitted() for label, each in known.items() if each is not None}
+    found = {label: each for label, each in known.items() if each is not None}
+    found |= {each.name: each for each in entries(owner) if each.kind == "best"}
     for name in extra:
         entry = resolve(name)
         if entry.problem is not owner:
             raise ValueError(
                 f"table {name} is of {entry.problem.name}: allowed are those of {owner.name}"
             )
-        found[name] = entry.require_fitted()
+        entry.require_table()
+        found[name] = entry
     return found
 
 
-def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float) -> dict:
+def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float | None) -> dict:
     outside = [
         f"{axis.name} is outside {axis.domain}"
         for axis in fitted.axes
@@ -253,10 +279,15 @@ def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float) ->
     if outside:
         return {"value": None, "difference": None, "reason": "; ".join(outside)}
     value = float(fitted(*arguments.values()))
-    return {"value": value, "difference": value - exact, "reason": None}
+    return {
+        "value": value,
+        "difference": None if exact is None else value - exact,
+        "reason": None,
+    }
 
 
 def _cells(entry: dict) -> list[str]:
     if entry["value"] is None:
-        return ["—", entry["reason"]]
-    return [f"{entry['value']:.15g}", f"{entry['difference']:+.1e}"]
+        return ["—", "—", entry["reason"]]
+    difference = "—" if entry["difference"] is None else f"{entry['difference']:+.1e}"
+    return [f"{entry['value']:.15g}", difference, ""]

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from shadefit.commands.names import require_tables
 from shadefit.completion import complete_language, complete_shader
 
 
@@ -46,10 +47,16 @@ def export(
     The code is run if its compiler is installed. Its header states the error
     that was measured.
     """
+    require_tables([table])
+    if to is not None:
+        from programs.languages import language
+
+        language(to)
     from coefficients.catalogue import resolve
     from coefficients.exported_code import source_file
     from coefficients.files import require_writable_file, write_whole
     from coefficients.table import serialise
+    from shadefit.encoding import shown_json
 
     if output is not None:
         require_writable_file(output)
@@ -65,6 +72,6 @@ def export(
     else:
         text = source_file(resolve(table), to, precision, name, constants or "inline")
     if output is None:
-        print(text, end="")
+        print(text if to else shown_json(text), end="")
     else:
         write_whole(output, text)

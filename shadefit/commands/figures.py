@@ -10,19 +10,26 @@ def figures(
     names: Annotated[
         list[str] | None, typer.Argument(help="Names of pictures; by default all.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("docs/figures"),
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("build/figures"),
 ) -> None:
     """Draw pictures as PNG and SVG: the figures of the supplement, errors, and costs."""
     from coefficients.files import require_writable, write_whole_bytes
     from shadefit.figures import pictures, render
+    from shadefit.progress import stages
 
     known = pictures()
     for name in names or []:
         if name not in known:
             raise ValueError(f"no figure is called {name!r}: allowed are {', '.join(known)}")
     require_writable(out)
-    for name in names or known:
-        for extension, data in render(known[name].draw).items():
-            path = out / f"{name}.{extension}"
-            write_whole_bytes(path, data)
-            print(path)
+    chosen, files = list(names or known), []
+    with stages() as progress:
+        stage = progress.begin("", total=len(chosen))
+        for name in chosen:
+            stage.show(name)
+            for extension, data in render(known[name].draw).items():
+                path = out / f"{name}.{extension}"
+                write_whole_bytes(path, data)
+                files.append(path)
+            stage.advance()
+    print(*files, sep="\n")

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from shadefit.commands.options import Bounded, Json, Norm, Relative, Rounding, Side, goal_fields
+from shadefit.commands.options import (
+    Bounded,
+    Json,
+    Norm,
+    Relative,
+    Rounding,
+    SecondOpinion,
+    Side,
+    goal_fields,
+    opinion_text,
+)
 
 if TYPE_CHECKING:
     from shadefit.declaration import Problem
@@ -51,6 +61,7 @@ def fit(
     rounding: Rounding = None,
     relative: Relative = False,
     bounded: Bounded = False,
+    second_opinion: SecondOpinion = False,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for NAME.json, or NAME-FORM.json of several forms."),
@@ -65,6 +76,7 @@ def fit(
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
     from integrals.data import table
+    from shadefit.records import FitOutput
     from shadefit.terminal import print_json
 
     columns = [part.strip() for part in x.split(",")]
@@ -84,6 +96,7 @@ def fit(
     results, refused = _fits(owner, goal, shlex.join(command), form)
     for reason in refused:
         print(f"refused: {reason}", file=sys.stderr)
+    opinions = [each.second_opinion() if second_opinion else None for each in results]
     several = len(form) > 1
     files = [
         out and out / f"{owner.name}{f'-{each.fit.fitted.form.name}' if several else ''}.json"
@@ -93,14 +106,18 @@ def fit(
         if file is not None:
             write_whole(file, serialise(each.table))
     if json:
+        from shadefit.commands.table_records import made_table
+
         records = [
-            {"file": file and str(file), **each.table.model_dump(by_alias=True, exclude_none=True)}
-            for each, file in zip(results, files, strict=True)
+            made_table(each.table, file, "file", opinion)
+            for each, file, opinion in zip(results, files, opinions, strict=True)
         ]
-        print_json({"tables": records})
+        print_json(FitOutput(tables=records))
         return
-    for each, file in zip(results, files, strict=True):
+    for each, file, opinion in zip(results, files, opinions, strict=True):
         print(each)
+        if opinion is not None:
+            print(opinion_text(opinion))
         if file is not None:
             print(file)
     if several:
@@ -114,20 +131,21 @@ def _fits(
 
     Raises ValueError if all are refused.
     """
+    from shadefit.progress import stages
     from shadefit.result import fit_result
-    from shadefit.terminal import stages
 
     options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
     results: list[Result] = []
     refused: list[str] = []
     with stages() as progress:
-        task = progress.add_task("")
+        line = progress.begin("forms", total=len(texts))
         for text, each in zip(texts, owner.forms, strict=True):
-            progress.update(task, description=f"{owner.name}: {text}")
+            line.show(f"{owner.name}: {text}")
             try:
                 results.append(fit_result(owner, each, goal, f"{command} --form {text}{options}"))
             except ValueError as error:
                 refused.append(str(error))
+            line.advance()
     if not results:
         raise ValueError("; ".join(refused))
     return results, refused

@@ -7,47 +7,39 @@ from shadefit.commands.options import Json
 if TYPE_CHECKING:
     from coefficients.table import Table
 
-# A longer equation does not fit into a column. --json prints it.
-_LONGEST = 20
-
 
 def list_tables(json: Json = False) -> None:
-    """List the tables that come with shadefit, with their names, forms and errors."""
-    from coefficients.catalogue import entries
+    """List the tables that come with shadefit, with their names, forms, errors and domains."""
+    from coefficients.packaged import kind_of, names, packaged_table
+    from shadefit.records import ListOutput, TableRecord, table_fields
     from shadefit.terminal import print_json, print_table
 
-    tables = {entry.name: entry.require_table() for entry in entries()}
+    tables = {name: packaged_table(name) for name in names()}
     if json:
-        print_json({"tables": [_record(name, table) for name, table in tables.items()]})
+        records = [
+            TableRecord(**table_fields(name, kind_of(name), table))
+            for name, table in tables.items()
+        ]
+        print_json(ListOutput(tables=records))
         return
     print_table(
         "Tables",
-        ["name", "quantity", "form", "equation", "rms", "largest"],
+        ["name", "of", "form", "rms", "largest", "in"],
         [
-            [
-                *(name, table.quantity, table.form),
-                table.equation if len(table.equation) <= _LONGEST else "—",
-                *_errors(table),
-            ]
+            [name, table.quantity, table.form, *_errors(table), _domain(table)]
             for name, table in tables.items()
         ],
         "Errors as the table states them, off the grid; 'compare' measures published ones.",
+        below=1,
     )
-
-
-def _record(name: str, table: "Table") -> dict:
-    errors = table.errors.off_grid if table.errors else None
-    return {
-        "name": name,
-        "quantity": table.quantity,
-        "form": table.form,
-        "equation": table.equation,
-        "rms": errors.rms if errors else None,
-        "max": errors.max if errors else None,
-    }
 
 
 def _errors(table: "Table") -> list[str]:
     if table.errors is None:
         return ["—", "—"]
     return [f"{table.errors.off_grid.rms:.3e}", f"{table.errors.off_grid.max:.3e}"]
+
+
+def _domain(table: "Table") -> str:
+    ends = {each.name: each.domain for each in table.arguments}
+    return ", ".join(f"{name} [{low:.4g}, {high:.4g}]" for name, (low, high) in ends.items())

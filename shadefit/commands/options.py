@@ -9,6 +9,7 @@ import typer
 from fitting import goal
 
 if TYPE_CHECKING:
+    from fitting.second_opinion import SecondOpinion as Opinion
     from integrals.reference import Axis
 
 _ANGLE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|rad|°)?\s*$")
@@ -40,6 +41,29 @@ Bounded = Annotated[
     bool,
     typer.Option("--bounded", help="With linf: keep all values between 0 and 1, and prove it."),
 ]
+
+
+SecondOpinion = Annotated[
+    bool,
+    typer.Option(
+        "--second-opinion",
+        help="Refit with another solver (jaxopt) from other starts, and say where it ends.",
+    ),
+]
+
+
+def opinion_text(found: "Opinion | str") -> str:
+    """Return what another solver found, as a sentence; a text says why there is none."""
+    if isinstance(found, str):
+        return f"second opinion: none: {found}"
+    same = f"values differ by at most {found.values:.2g}, coefficients by {found.coefficients:.2g}"
+    if found.agreed:
+        return f"second opinion: the same, from {found.tried} other starts; {same} (relative)"
+    word = "a better one" if found.better else "another one, which is not better"
+    return (
+        f"second opinion: {word}, of {found.tried} other starts: error {found.other_error:.4g} "
+        f"instead of {found.error:.4g}; {same} (relative)"
+    )
 
 
 def goal_fields(norm, side, rounding, relative: bool, bounded: bool) -> dict[str, Any]:

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from shadefit.commands.names import require_quantities
 from shadefit.commands.options import (
     Bounded,
     Json,
     Norm,
     Relative,
     Rounding,
+    SecondOpinion,
     Side,
     goal_fields,
+    opinion_text,
 )
 from shadefit.completion import complete_quantity
 
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from coefficients.table import Table
     from fitting import Form
+    from fitting.fit import Fit
+    from fitting.second_opinion import SecondOpinion as Opinion
     from quantities import Problem
 
 ALL = "all"
@@ -42,7 +47,9 @@ def refit(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for NAME.json; by default the packaged table is replaced."),
+        typer.Option(
+            help="Folder for NAME.json; by default, in a checkout, the packaged table is replaced."
+        ),
     ] = None,
     form: Annotated[
         list[str] | None,
@@ -70,11 +77,12 @@ def refit(
     rounding: Rounding = None,
     relative: Relative = False,
     bounded: Bounded = False,
+    second_opinion: SecondOpinion = False,
     json: Json = False,
 ) -> None:
     """Fit the forms of the paper, or those of best tables, to exact values, and write tables."""
     given = goal_fields(norm, side, rounding, relative, bounded)
-    run(names or [], out, grid, weight, given, json, form or [])
+    run(names or [], out, grid, weight, given, json, form or [], second_opinion)
 
 
 def run(
@@ -85,18 +93,24 @@ def run(
     given: dict[str, Any],
     as_json: bool,
     forms: list[str] | None = None,
+    second_opinion: bool = False,
 ) -> None:
     """Refit tables, and write `out`/NAME.json for each. If any fit fails, nothing is written.
 
-    If `out` is None, the packaged tables are replaced. `given` has the fields of the goal that
-    replace those of the table's own goal. `forms` names those to fit of users' quantities. If it is
-    ['all'], a form whose fit fails is left out, and the reason is printed.
+    If `out` is None, the packaged tables of the checkout are replaced. `given` has the fields of
+    the goal that replace those of the table's own goal. `forms` names those to fit of users'
+    quantities. If it is ['all'], a form whose fit fails is left out, and the reason is printed.
     """
+    from coefficients.packaged import names_of_best
+
+    require_quantities(names, "nothing is called", (ALL, *names_of_best()))
     from concurrent.futures import ThreadPoolExecutor
 
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
-    from shadefit.terminal import print_json, print_table, stages
+    from shadefit.progress import stages
+    from shadefit.records import RefitOutput
+    from shadefit.terminal import print_json, print_table
 
     _require_measure(weight)
     chosen = selection(names)
@@ -111,25 +125,34 @@ def run(
     for folder in set(folders):
         require_writable(folder)
     with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
+        whole = progress.begin("tables", total=len(chosen))
 
-        def make(each: "tuple[Problem, Form] | Entry") -> "Table | str":
-            task = progress.add_task(_name(each), total=None)
-
-            def tell(stage: str) -> None:
-                progress.update(task, description=f"{_name(each)}: {stage}")
-
+        def make(
+            each: "tuple[Problem, Form] | Entry",
+        ) -> "tuple[Table, Opinion | str | None] | str":
+            name = _name(each)
+            line = progress.begin(name)
             try:
-                table = _table(each, grid, weight, given, tell)
+                found = _table(
+                    each,
+                    grid,
+                    weight,
+                    given,
+                    lambda stage: line.show(f"{name}: {stage}"),
+                    second_opinion,
+                )
             except ValueError as error:
                 if ALL not in (forms or []):
                     raise
-                tell("refused")
+                line.end(f"{name}: refused")
                 return str(error)
-            tell("done")
-            return table
+            line.end(f"{name}: done")
+            whole.advance()
+            return found
 
         made = list(workers.map(make, chosen))
-    tables = [each for each in made if not isinstance(each, str)]
+    tables = [each[0] for each in made if not isinstance(each, str)]
+    opinions = [each[1] for each in made if not isinstance(each, str)]
     refused = [each for each in made if isinstance(each, str)]
     if not tables:
         raise ValueError("; ".join(refused))
@@ -140,15 +163,26 @@ def run(
     for table, file in zip(tables, files, strict=True):
         write_whole(file, serialise(table))
     if as_json:
-        records = [_record(table, file) for table, file in zip(tables, files, strict=True)]
-        print_json({"tables": records})
+        from shadefit.commands.table_records import made_table
+
+        records = [
+            made_table(
+                table, file, "best" if table.name.startswith("best/") else "refitted", opinion
+            )
+            for table, file, opinion in zip(tables, files, opinions, strict=True)
+        ]
+        print_json(RefitOutput(tables=records))
     else:
         print_table(
             "Refitted tables",
-            ["table", "equation", "coefficients", "rms", "largest", "denominators ≥", "file"],
+            ["table", "equation", "coefficients", "rms", "largest", "denominators ≥", ""],
             [_row(table, file) for table, file in zip(tables, files, strict=True)],
             "Errors are measured off the grid, against exact values.",
+            below=1,
         )
+        for table, opinion in zip(tables, opinions, strict=True):
+            if opinion is not None:
+                print(f"{table.name}: {opinion_text(opinion)}")
 
 
 def selection(names: list[str]) -> "list[Problem | Entry]":
@@ -157,7 +191,8 @@ def selection(names: list[str]) -> "list[Problem | Entry]":
     Quantities come first, in the order of the registry. 'all' stands for all of them; no name, for
     those of the user's problem files or, if there are none, for all.
     """
-    from coefficients.catalogue import names_of_best, resolve
+    from coefficients.catalogue import resolve
+    from coefficients.packaged import names_of_best
     from quantities import problem, problems
     from quantities.registry import installed
 
@@ -196,9 +231,12 @@ def _has_own_goal(each: "Problem | Entry") -> bool:
 def _own_folder(name: str) -> Path:
     """Return the folder of a packaged table, relative to the working directory if it is inside."""
     from coefficients.catalogue import is_kept, path_of
+    from coefficients.packaged import in_checkout
 
     if not is_kept(name):
         raise ValueError(f"{name} has no folder of its own: give one by --out")
+    if not in_checkout():
+        raise ValueError(f"{name} comes with an installed package: give a folder by --out")
     folder, here = path_of(name).parent, Path.cwd()
     return folder.relative_to(here) if folder.is_relative_to(here) else folder
 
@@ -230,7 +268,8 @@ def _table(
     weight: str,
     given: dict[str, Any],
     tell: Callable[[str], None],
-) -> "Table":
+    second_opinion: bool,
+) -> "tuple[Table, Opinion | str | None]":
     from coefficients.record import table_of
     from fitting.fit import fit
     from fitting.goal import Goal
@@ -246,13 +285,26 @@ def _table(
         weighted = f" --weight {weight}" if owner.topic else ""
         command = f"shadefit refit{file} {owner.name}{other}{on_grid}{weighted}{_options(given)}"
         made = fit(form, Goal(**given), nodes, weight, tell)
-        return table_of(made, command, _name(each), owner)
+        table = table_of(made, command, _name(each), owner)
+        return table, _opinion(made) if second_opinion else None
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()
     goal = Goal(**{**own, **given})
     made = fit(each.require_fitted().form, goal, measure=weight, progress=tell)
     options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
-    return table_of(made, f"shadefit refit {each.name}{options}", table.name, each.problem)
+    command = f"shadefit refit {each.name}{options}"
+    table = table_of(made, command, table.name, each.problem)
+    return table, _opinion(made) if second_opinion else None
+
+
+def _opinion(made: "Fit") -> "Opinion | str":
+    """Return what another solver finds; a text if there is none for this fit, that says why."""
+    from fitting.second_opinion import second_opinion
+
+    try:
+        return second_opinion(made.fitted.form, made.goal, made)
+    except ValueError as error:
+        return str(error)
 
 
 def _options(given: dict[str, Any]) -> str:
@@ -261,11 +313,6 @@ def _options(given: dict[str, Any]) -> str:
         key: f" --{key}" if value is True else f" --{key} {value}" for key, value in given.items()
     }
     return "".join(flags.values())
-
-
-def _record(table: "Table", file: Path) -> dict:
-    data = table.model_dump(by_alias=True, exclude_none=True)
-    return {"file": str(file), **data}
 
 
 def _row(table: "Table", file: Path) -> list[str]:

@@ -20,7 +20,7 @@ def render(
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("build/render"),
     density: Annotated[float, typer.Option(help="Density of the layer, 0 to 0.5.")] = 0.2,
     spread: Annotated[
-        float, typer.Option(help="Spread of the fibres' lobe, above 0, to 1: the square of α.")
+        float, typer.Option(help="Spread of the fibres' lobe, above 0, to 1: the square of alpha.")
     ] = 0.2,
     tilt: Annotated[
         float, typer.Option(parser=angle, metavar="ANGLE", help="Polar angle of the fibres.")
@@ -114,13 +114,14 @@ def check_settings(settings: "Settings") -> None:
 
 def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
+    from shadefit.records import RenderOutput
     from shadefit.render.sweep import draw_sweep
     from shadefit.terminal import print_json
 
     path = out / "sweep.png"
     write_whole_bytes(path, draw_sweep(scene, settings))
     if json:
-        print_json({"files": [str(path)]})
+        print_json(RenderOutput(files=[str(path)], images=[]))
     else:
         print(path)
 
@@ -128,22 +129,26 @@ def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) ->
 def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
     from coefficients.textures.exr import write_exr
+    from shadefit.progress import stages
+    from shadefit.records import RenderOutput
     from shadefit.render.comparison import compare, exr_channels
     from shadefit.render.sheet import draw_comparisons
-    from shadefit.terminal import print_json, print_table, stages
+    from shadefit.terminal import print_json, print_table
 
     comparisons = []
     with stages() as progress:
-        task = progress.add_task("")
+        stage = progress.begin("", total=len(scenes))
         for scene in scenes:
-            progress.update(task, description=scene.name)
+            stage.show(scene.name)
             comparisons.append(compare(scene, settings))
+            stage.advance()
     sheet, exr = out / "render.png", out / "render.exr"
     write_whole_bytes(sheet, draw_comparisons(comparisons))
     write_whole_bytes(exr, write_exr(exr_channels(comparisons)))
     rows = [row for comparison in comparisons for row in comparison.statistics()]
     if json:
-        print_json({"files": [str(sheet), str(exr)], "images": rows})
+        files = [str(sheet), str(exr)]
+        print_json(RenderOutput.model_validate({"files": files, "images": rows}))
         return
     print_table(
         "Luminance against the image with exact functions",

@@ -12,16 +12,18 @@ def report(
     """Write one HTML file: errors and costs of all tables, figures, errata, and an explorer."""
     from coefficients.files import require_writable_file, write_whole
     from shadefit.figures import pictures, render
+    from shadefit.progress import stages
     from shadefit.report.page import page
-    from shadefit.terminal import stages
 
     require_writable_file(out)
     drawn = {}
     with stages() as progress:
-        task = progress.add_task("")
-        for name, picture in pictures().items():
-            progress.update(task, description=name)
+        known = pictures()
+        stage = progress.begin("", total=len(known) + 1)
+        for name, picture in known.items():
+            stage.show(name)
             drawn[name] = render(picture.draw)["png"]
-        progress.update(task, description="tables")
+            stage.advance()
+        stage.show("tables")
         write_whole(out, page(drawn))
     print(out)

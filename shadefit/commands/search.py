@@ -1,11 +1,11 @@
 """`shadefit search`: fit many forms of a quantity, and find the best for each cost."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from shadefit.commands.names import require_quantities
 from shadefit.commands.options import (
     Bounded,
     Json,
@@ -18,6 +18,7 @@ from shadefit.commands.options import (
 
 if TYPE_CHECKING:
     from coefficients.search import Found, Result
+    from shadefit.records import FoundTable
 
 
 def search(
@@ -30,7 +31,7 @@ def search(
         float | None, typer.Option(help="Print only forms whose largest error is at most this.")
     ] = None,
     least_alpha: Annotated[
-        float, typer.Option(help="Least α of the domain of the forms of ps and r.")
+        float, typer.Option(help="Least alpha of the domain of the forms of ps and r.")
     ] = 0.15,
     norm: Norm = None,
     side: Side = None,
@@ -40,19 +41,20 @@ def search(
     out: Annotated[
         Path,
         typer.Option(help="Folder for tables and the plot; forms with a table are not refitted."),
-    ] = Path("search"),
+    ] = Path("build/search"),
     json: Json = False,
 ) -> None:
     """Fit many forms of a quantity. Print and plot their operations and largest errors.
 
     By default the largest error is minimised, and coefficients are float32.
     """
+    require_quantities([quantity], "no forms are known of")
     from coefficients.files import require_writable, write_whole_bytes
     from coefficients.search import Search
     from fitting import Goal
     from quantities import problems
     from shadefit.figures.search import draw
-    from shadefit.terminal import stages
+    from shadefit.progress import stages
 
     fields: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
     fields |= goal_fields(norm, side, rounding, relative, bounded)
@@ -64,7 +66,7 @@ def search(
         if each.candidates is not None or len(each.single_forms) > 1
     }
     if quantity not in known:
-        raise ValueError(f"no forms of {quantity!r} are known: allowed are {', '.join(known)}")
+        raise ValueError(f"no forms are known of {quantity!r}: allowed are {', '.join(known)}")
     if budget is not None and budget < 1:
         raise ValueError(f"budget = {budget}: at least one operation is needed")
     if max_error is not None and not max_error > 0:
@@ -74,8 +76,10 @@ def search(
     require_writable(out)
     wanted = Search(known[quantity], goal, out, budget, {"alpha": least_alpha})
     with stages() as progress:
-        task = progress.add_task(quantity, total=None)
-        result = wanted.run(lambda text: progress.update(task, description=f"{quantity}: {text}"))
+        line = progress.begin(quantity)
+        result = wanted.run(
+            lambda stage, done, total: line.show(f"{quantity}: {stage}", done, total)
+        )
     drawn = out / f"{quantity}-frontier"
     for extension, data in draw(known[quantity], result).items():
         write_whole_bytes(drawn.with_suffix(f".{extension}"), data)
@@ -88,17 +92,38 @@ def search(
 
 
 def _print_json(quantity: str, result: "Result", good: "list[Found]") -> None:
+    from shadefit.records import SearchOutput
     from shadefit.terminal import print_json
 
-    records = {"frontier": result.best, "good": good, "all": result.found}
+    def record(each: "Found") -> "FoundTable":
+        return _record(quantity, each)
+
     print_json(
-        {
-            "quantity": quantity,
-            "published": None if result.published is None else asdict(result.published),
-            "exact": [asdict(each) for each in result.exact],
-            "refused": result.refused,
-            **{key: [asdict(each) for each in value] for key, value in records.items()},
-        }
+        SearchOutput(
+            quantity=quantity,
+            published=None if result.published is None else record(result.published),
+            exact=list(map(record, result.exact)),
+            refused=result.refused,
+            frontier=list(map(record, result.best)),
+            good=list(map(record, good)),
+            all=list(map(record, result.found)),
+        )
+    )
+
+
+def _record(quantity: str, each: "Found") -> "FoundTable":
+    from shadefit.records import ErrorsRecord, FoundTable
+
+    return FoundTable(
+        name=each.name,
+        kind=each.kind,
+        quantity=quantity,
+        form=each.form,
+        equation=each.equation,
+        file=each.file,
+        errors=ErrorsRecord(rms=each.rms, max=each.largest, where=each.where, points=each.points),
+        size=each.coefficients,
+        operations=each.operations,
     )
 
 
@@ -118,7 +143,7 @@ def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, dra
 def _row(each: "Found", published: "Found | None") -> list[str]:
     return [
         each.name,
-        each.form,
+        each.form or "exact",
         str(each.coefficients),
         str(each.operations),
         f"{each.rms:.3e}",

@@ -4,11 +4,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from shadefit.commands.names import require_tables
 from shadefit.commands.options import Json
 from shadefit.completion import complete_language, complete_shader
 
 if TYPE_CHECKING:
-    from programs import Check
+    from programs.toolchains.verification import Check, Difference
+    from shadefit.records import CheckRecord, CodeErrors
+
+ADVICE = "in a checkout, 'make toolchains' installs the compilers that are missing"
 
 
 def verify(
@@ -34,32 +38,45 @@ def verify(
     The exit status is 1 if any language failed. A language whose compiler
     is not installed is 'not checked'.
     """
-    from dataclasses import asdict
+    from programs.languages import LANGUAGES, language
 
-    from coefficients.catalogue import resolve
-    from coefficients.exported_code import trial_of
-    from programs import LANGUAGES, check, language
-    from shadefit.terminal import print_json, stages
-
+    require_tables(tables)
     languages = list(LANGUAGES) if to == "all" else [language(to).key]
     kinds = _precisions(languages, precision)
+    from coefficients.catalogue import resolve
+    from coefficients.exported_code import trial_of
+    from programs import check
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.progress import stages
+    from shadefit.records import VerifiedTable, VerifyOutput
+    from shadefit.terminal import print_json
+
+    entries = {name: resolve(name) for name in tables}
     checks: dict[str, list[Check]] = {}
     with stages() as progress:
-        task = progress.add_task("")
-        for name in tables:
-            entry = resolve(name)
+        line = progress.begin("", total=len(entries) * sum(map(len, kinds.values())))
+        for name, entry in entries.items():
             checks[name] = []
             for kind, some in kinds.items():
+                line.show(f"{name}, {kind}: exact values")
                 trial = trial_of(entry, kind)
                 for each in some:
-                    progress.update(task, description=f"{name} in {each}, {kind}")
+                    line.show(f"{name} in {each}, {kind}")
                     checks[name].append(check(trial, each))
+                    line.advance()
+    every = [each for rows in checks.values() for each in rows]
     if json:
-        print_json({"tables": {name: list(map(asdict, rows)) for name, rows in checks.items()}})
+        records = [
+            VerifiedTable(**entry_fields(entries[name]), checks=list(map(_record, rows)))
+            for name, rows in checks.items()
+        ]
+        print_json(VerifyOutput(tables=records))
     else:
         for name, rows in checks.items():
             _print(name, rows)
-    every = [each for rows in checks.values() for each in rows]
+        left_out = sum(each.status == "not checked" for each in every)
+        if left_out:
+            print(f"{left_out} of {len(every)} not checked: {ADVICE}")
     return 1 if any(each.status == "failed" for each in every) else 0
 
 
@@ -92,11 +109,13 @@ def _print(name: str, checks: "list[Check]") -> None:
     print_table(
         f"{name}: exported code against its float64 form and the exact integral",
         [
-            *("language", "precision", "status", "points", "form: largest", "rms"),
-            *("ULP: largest", "rms", "allowed", "rms", "integral: largest", "rms", "not finite"),
+            *("language", "precision", "status", "form: largest", "allowed"),
+            *("integral: largest", "integral: rms", "form: rms", "allowed rms"),
+            *("ULP: largest", "ULP: rms", "not finite", "points"),
         ],
         [_row(each) for each in checks],
         f"allowed: {SLACK:g} times the error of the same operations, each correctly rounded.",
+        below=6,
     )
     for each in checks:
         if each.reason is not None:
@@ -107,20 +126,47 @@ def _print(name: str, checks: "list[Check]") -> None:
     print()
 
 
+def _record(check: "Check") -> "CheckRecord":
+    from shadefit.records import CheckRecord
+
+    points = {name: check.points for name in ("form", "units", "allowed")}
+    points["integral"] = check.integral_points
+    own = ("language", "precision", "status", "reason", "tool", "note")
+    return CheckRecord.model_validate(
+        {
+            **{name: getattr(check, name) for name in own},
+            **{name: _errors(getattr(check, name), count) for name, count in points.items()},
+        }
+    )
+
+
+def _errors(difference: "Difference | None", points: int) -> "CodeErrors | None":
+    from shadefit.records import CodeErrors
+
+    if difference is None:
+        return None
+    return CodeErrors(
+        rms=difference.rms,
+        max=difference.largest,
+        points=points,
+        not_finite=difference.not_finite,
+    )
+
+
 def _row(each: "Check") -> list[str]:
     row = [each.language, each.precision, each.status]
     if each.form is None or each.units is None or each.allowed is None or each.integral is None:
-        return [*row, *["—"] * 10]
+        return [*row, *["—"] * 4, *[""] * 6]
     return [
         *row,
-        f"{each.points:,}",
         f"{each.form.largest:.1e}",
-        f"{each.form.rms:.1e}",
-        f"{each.units.largest:.1f}",
-        f"{each.units.rms:.2f}",
         f"{each.allowed.largest:.1e}",
-        f"{each.allowed.rms:.1e}",
         f"{each.integral.largest:.2e}",
         f"{each.integral.rms:.2e}",
+        f"{each.form.rms:.1e}",
+        f"{each.allowed.rms:.1e}",
+        f"{each.units.largest:.1f}",
+        f"{each.units.rms:.2f}",
         str(each.form.not_finite),
+        f"{each.points:,}",
     ]

@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coefficients.catalogue import Entry, entries, names_of_best, resolve
+from coefficients.catalogue import Entry, entries, resolve
 from coefficients.exported_code import operations_of
+from coefficients.packaged import names_of_best
 from fitting import FittedForm, form_values, judge
 from fitting.fit import ENOUGH
 from fitting.form import traced

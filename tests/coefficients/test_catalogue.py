@@ -7,11 +7,7 @@ import pytest
 
 from coefficients import catalogue
 from coefficients.catalogue import (
-    FOLDER,
-    corrected,
     entries,
-    names,
-    names_of_best,
     path_of,
     printed,
     published,
@@ -19,6 +15,7 @@ from coefficients.catalogue import (
     resolve,
     with_published,
 )
+from coefficients.packaged import FOLDER, corrected, names, names_of_best
 from coefficients.table import Table, parse, read, serialise
 from programs import trace
 from quantities import problem, problems
@@ -266,7 +263,7 @@ def test_the_path_of_a_table_is_where_it_is_or_would_be():
 
 
 def test_the_path_of_a_new_quantitys_table_is_in_its_topic(monkeypatch):
-    monkeypatch.setattr(catalogue, "_files", dict)
+    monkeypatch.setattr(catalogue, "files", dict)
     assert path_of("g") == FOLDER / "fuzz" / "refit" / "g.json"
 
 

@@ -13,8 +13,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import coefficients
-from coefficients.catalogue import FOLDER, names_of_best
 from coefficients.files import write_whole
+from coefficients.packaged import FOLDER, names_of_best
 from coefficients.table import (
     MAX_BYTES,
     SCHEMA,

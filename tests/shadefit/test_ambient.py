@@ -21,6 +21,7 @@ from shadefit.ambient.radiances import (
 )
 from shadefit.ambient.sheet import interpolate_period
 from shadefit.cli import main
+from shadefit.records import AmbientOutput
 from shadefit.render.functions import EXACT, table_sets
 from shading import (
     deferred_radiance,
@@ -164,6 +165,7 @@ def test_the_command_prints_what_it_measured(tmp_path, capsys):
         main(["ambient", "--out", str(tmp_path), "--json"])
     assert stopped.value.code == 0
     record = json.loads(capsys.readouterr().out)
+    AmbientOutput.model_validate(record)
     assert record["points"] == len(materials_and_views())
     assert len(record["errors"]) == 2 * len(lights())
     assert (tmp_path / "ambient.png").stat().st_size > 10_000

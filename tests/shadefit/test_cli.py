@@ -1,5 +1,6 @@
 """The command line: what it prints, what it refuses, and that refusing leaves nothing behind."""
 
+import inspect
 import json
 import math
 import os
@@ -12,13 +13,19 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from coefficients import files
-from coefficients.catalogue import FOLDER, names, resolve
+from coefficients import files, packaged
+from coefficients.catalogue import entries, resolve
+from coefficients.packaged import FOLDER, names
 from coefficients.table import Table, parse, serialise
 from quantities import problems
 from shadefit.cli import main
 from shadefit.commands import refit
+from shadefit.commands.ambient import ambient
+from shadefit.commands.figures import figures
 from shadefit.commands.options import angle
+from shadefit.commands.render import render
+from shadefit.commands.report import report
+from shadefit.commands.search import search
 
 NAMES = names()
 REFERENCES = {name: problem.reference for name, problem in problems().items()}
@@ -71,8 +78,10 @@ def test_evaluate_gives_every_leg_within_its_error(capsys, name):
         allowed = 5 * leg["error"] if leg_name == "monte_carlo" else leg["error"]
         assert abs(leg["value"] - exact["value"]) <= allowed + exact["error"]
     # The worst published table, P_s, is off by at most 0.14.
-    for table in result["tables"].values():
+    for table in result["tables"]:
         assert abs(table["difference"]) < 0.15
+    best = [each.name for each in entries(problems()[name]) if each.kind == "best"]
+    assert [table["label"] for table in result["tables"] if table["kind"] == "best"] == best
 
 
 def test_float64_is_set_whatever_the_environment_says():
@@ -92,8 +101,10 @@ def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
     arguments = ["--alpha", "0.35", "--theta-f", "1deg", "--theta-u", "30deg", "--phi", "0"]
     _, out, _ = run(capsys, "evaluate", "ps", *arguments, "--json")
     result = json.loads(out)
-    assert result["tables"]["published"]["value"] is None
-    assert "theta_f" in result["tables"]["published"]["reason"]
+    published = result["tables"][0]
+    assert published["label"] == "published"
+    assert published["value"] is None
+    assert "theta_f" in published["reason"]
     assert result["legs"]["closed_form"]["value"] > 0
 
 
@@ -102,14 +113,16 @@ def test_evaluate_shows_the_tables_that_are_asked_for(capsys, tmp_path):
     assert run(capsys, "export", "best/q-9", "-o", path)[0] == 0
     own = ["--table", "best/q-9", "--table", path]
     _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own, "--json")
-    tables = json.loads(out)["tables"]
-    assert list(tables) == ["published", "refitted", *own[1::2]]
-    assert tables["best/q-9"] == tables[path]
+    tables = {table["label"]: table for table in json.loads(out)["tables"]}
+    best = ["best/q-12", "best/q-12-log", "best/q-4", "best/q-5", "best/q-9"]
+    assert list(tables) == ["published", "refitted", *best, path]
+    assert tables["best/q-9"]["value"] == tables[path]["value"]
+    assert tables[path]["kind"] == "file" and tables[path]["file"] == path
     stated = table_of("best/q-9").errors
     assert stated is not None
     assert abs(tables[path]["difference"]) <= stated.off_grid.max
     _, out, _ = run(capsys, "evaluate", "q", "--d", "0.3", *own)
-    rows = [line.split() for line in out.splitlines() if line.strip().startswith(tuple(own[1::2]))]
+    rows = [line.split() for line in out.splitlines() if line.startswith(("best/q-9", path))]
     assert [float(row[1]) for row in rows] == pytest.approx([tables[path]["value"]] * 2)
 
 
@@ -152,14 +165,41 @@ def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
     assert not list(tmp_path.iterdir())
 
 
+def test_an_installed_package_is_not_written_into(capsys, monkeypatch):
+    monkeypatch.setattr(packaged, "in_checkout", lambda: False)
+    for name in ("q", "best/q-4"):
+        said = refuses(capsys, "refit", name)
+        assert f"{name} comes with an installed package: give a folder by --out" in said
+
+
+def test_a_checkout_is_known_by_its_project_file(monkeypatch, tmp_path):
+    assert packaged.in_checkout()
+    monkeypatch.setattr(packaged, "FOLDER", tmp_path / "site-packages" / "coefficients" / "tables")
+    assert not packaged.in_checkout()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [ambient, figures, refit.refit, render, report, search],
+    ids=lambda each: each.__name__,
+)
+def test_no_default_output_is_a_tracked_file(command):
+    default = inspect.signature(command).parameters["out"].default
+    # A refit replaces its table in a checkout, and needs --out elsewhere.
+    assert default is None if command is refit.refit else default.parts[0] == "build"
+
+
 def test_compare_measures_each_table_against_the_exact_integral(capsys):
     status, out, _ = run(capsys, "compare", "q", "--json")
     assert status == 0
     (comparison,) = json.loads(out)["comparisons"]
     published, refitted = comparison["tables"]
-    assert published["table"] == "published"
-    assert refitted["rms"] <= published["rms"]
-    assert refitted["rms_ratio"] == pytest.approx(refitted["rms"] / published["rms"])
+    assert published["label"] == "published"
+    before, after = published["errors"], refitted["errors"]
+    assert after["rms"] <= before["rms"]
+    assert refitted["ratios"]["rms"] == pytest.approx(after["rms"] / before["rms"])
+    assert refitted["ratios"]["max"] == pytest.approx(after["max"] / before["max"])
+    assert refitted["coefficients"] == table_of("q").coefficients
     assert comparison["largest_difference"]["value"] > 0
 
 
@@ -315,7 +355,7 @@ def test_any_density_is_evaluated_or_refused(capsys, value):
     status, out, err = run(capsys, *arguments)
     if status == 0:
         result = json.loads(out)
-        assert result["arguments"]["density"] == float(text)
+        assert result["where"]["density"] == float(text)
         assert 0 <= result["legs"]["closed_form"]["value"] <= 1
     else:
         assert status == 2

@@ -8,6 +8,7 @@ from programs import PRECISIONS, ToolchainError, toolchain
 from programs.toolchains import verification
 from programs.toolchains.interface import Toolchain
 from shadefit.cli import main
+from shadefit.commands.verify import ADVICE
 
 
 def run(capsys, *arguments):
@@ -20,9 +21,9 @@ def run(capsys, *arguments):
 def test_verify_prints_a_row_a_language(capsys):
     status, out, _ = run(capsys, "verify", "q", "--to", "python", "--precision", "all", "--json")
     assert status == 0
-    rows = json.loads(out)["tables"]["q"]
+    rows = json.loads(out)["tables"][0]["checks"]
     assert [row["precision"] for row in rows] == list(PRECISIONS)
-    assert all(row["status"] == "passed" and row["points"] >= 100_000 for row in rows)
+    assert all(row["status"] == "passed" and row["form"]["points"] >= 100_000 for row in rows)
     status, out, _ = run(capsys, "verify", "q", "--to", "javascript")
     assert status == 0
     if toolchain("javascript").missing("double") is None:
@@ -34,6 +35,9 @@ def test_a_missing_compiler_is_not_checked_and_never_passed(capsys, monkeypatch)
     status, out, _ = run(capsys, "verify", "q", "--to", "c")
     assert status == 0
     assert "not checked" in out and "passed" not in out
+    # One line says how to get what is missing.
+    advice = [line for line in out.splitlines() if "make toolchains" in line]
+    assert advice == [f"1 of 1 not checked: {ADVICE}"]
 
 
 def test_verify_says_by_its_status_that_something_failed(capsys, monkeypatch):
@@ -85,12 +89,12 @@ def test_export_writes_the_file_whole(capsys, tmp_path):
 
 def test_cost_counts_beside_the_closed_form(capsys):
     _, out, _ = run(capsys, "cost", "ps", "--json")
-    rows = {row["function"]: row for row in json.loads(out)["functions"]}
+    rows = {row["function"]: row for row in json.loads(out)["tables"][0]["functions"]}
     assert list(rows) == ["CalcFuzzPsCoeffs", "FuzzPs", "FuzzPsExact"]
     assert [row["evaluated_for"] for row in rows.values()] == [
         "a material", "a direction", "a direction, exact/ps",
     ]  # fmt: skip
-    assert (rows["FuzzPs"]["mul"], rows["FuzzPs"]["add"]) == (8, 5)
+    assert (rows["FuzzPs"]["kinds"]["mul"], rows["FuzzPs"]["kinds"]["add"]) == (8, 5)
     assert rows["FuzzPs"]["throughput"] is None
     assert "exact/ps" in run(capsys, "cost", "ps")[1]
     assert "No exact form" in run(capsys, "cost", "g")[1]
@@ -100,6 +104,6 @@ def test_cost_measures_throughput(capsys):
     if toolchain("c").missing("float") is not None:
         pytest.skip("gcc is not here")
     _, out, _ = run(capsys, "cost", "q", "--throughput", "--json")
-    (row,) = json.loads(out)["functions"]
+    (row,) = json.loads(out)["tables"][0]["functions"]
     assert row["throughput"]["compiled"] > 0 and row["throughput"]["jax"] > 0
     assert "million" in run(capsys, "cost", "q", "--throughput")[1]

@@ -19,6 +19,7 @@ from coefficients.textures.exr import write_exr
 from quantities.fuzz import PS, G, Q, R
 from shadefit.cli import main
 from shadefit.commands.render import run
+from shadefit.records import RenderOutput
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import CHOICES, EXACT, table_sets
 from shadefit.render.image import render_image
@@ -284,6 +285,7 @@ def test_the_command_writes_both_files(tmp_path, capsys):
         main(arguments)
     assert stopped.value.code == 0
     record = json.loads(capsys.readouterr().out)
+    RenderOutput.model_validate(record)
     assert {row["tables"] for row in record["images"]} == {each.name for each in table_sets()}
     assert (tmp_path / "render.png").read_bytes().startswith(b"\x89PNG")
     read = read_exr((tmp_path / "render.exr").read_bytes())

@@ -9,13 +9,16 @@ from fitting import Goal
 from quantities import problem
 from quantities.fuzz.supplement import RATIONAL_PS
 from shadefit.commands.search import search
+from shadefit.records import SearchOutput
 
 GOAL = Goal("l2", rounding="float32")
 
 
 def run(capsys, folder, *, rounding="float32"):
     search("q", budget=5, norm="l2", rounding=rounding, out=folder, json=True)
-    return json.loads(capsys.readouterr().out)
+    found = json.loads(capsys.readouterr().out)
+    SearchOutput.model_validate(found)
+    return found
 
 
 def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, capsys, monkeypatch):
@@ -23,10 +26,12 @@ def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, capsys
     best = found["frontier"]
     assert 2 <= len(best) < len(found["all"])
     assert all(each["operations"] <= 5 for each in found["all"])
-    costs, errors = zip(*((each["operations"], each["largest"]) for each in best), strict=True)
+    costs, errors = zip(
+        *((each["operations"], each["errors"]["max"]) for each in best), strict=True
+    )
     assert list(costs) == sorted(set(costs))
     assert list(errors) == sorted(errors, reverse=True)
-    assert errors[-1] < found["published"]["largest"]
+    assert errors[-1] < found["published"]["errors"]["max"]
     # Every table is an ordinary one, and so is the plot.
     for each in found["all"]:
         assert (tmp_path / each["file"]).is_file()
@@ -62,7 +67,7 @@ def test_a_search_for_r_begins_with_the_forms_of_the_best_tables(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("s", None, None, 0.15), "no forms of 's' are known"),
+        (("s", None, None, 0.15), "no forms are known of 's'"),
         (("q", 0, None, 0.15), "budget = 0"),
         (("q", None, -1.0, 0.15), "max-error = -1.0"),
         (("r", None, None, 1.5), "least-alpha = 1.5"),

@@ -1,0 +1,101 @@
+"""Commands in a real terminal: at several widths, without colours, and interrupted."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from coefficients.packaged import names, packaged_table
+from shadefit.terminal import print_table
+from tests.shadefit.screen import Session, screen
+
+
+def shown(*arguments: str, width: int, **environment: str) -> tuple[str, list[str]]:
+    """Return the whole output of a command in a terminal, and the lines on its screen."""
+    session = Session(*arguments, width=width, **environment)
+    assert session.end() == 0, session.output
+    return session.output, screen(session.output)
+
+
+@pytest.mark.parametrize("width", [60, 80, 100])
+def test_the_numbers_of_a_comparison_are_whole(width):
+    _, lines = shown("compare", "q", width=width)
+    assert max(map(len, lines)) <= width
+    text = "\n".join(lines)
+    assert "…" not in text
+    assert re.search(
+        r"published +4\.6743e-03 +1\.0000 +9\.2892e-03 +1\.0000\n +at density 0.5", text
+    )
+    assert re.search(r"refitted q +4\.6663e-03 +0\.9983 +1\.0060e-02 +1\.0830\n +at density", text)
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 100])
+def test_the_list_of_tables_is_whole(width):
+    _, lines = shown("list", width=width)
+    assert max(map(len, lines)) <= width
+    text = " ".join(" ".join(lines).split())
+    for name in names():
+        assert name in text
+        errors = packaged_table(name).errors
+        if errors is not None:
+            assert f"{errors.off_grid.rms:.3e}" in text
+            assert f"{errors.off_grid.max:.3e}" in text
+
+
+def test_without_colours_and_on_a_dumb_terminal():
+    output, lines = shown("list", width=80, NO_COLOR="1")
+    # Bold and dim are no colours: these are the parameters 30 to 49 and 90 to 107.
+    codes = {
+        int(code) for each in re.findall(r"\x1b\[([\d;]*)m", output) for code in each.split(";")
+    }
+    assert not [code for code in codes if 30 <= code <= 49 or 90 <= code <= 107]
+    plain, same = shown("list", width=80, TERM="dumb")
+    assert "\x1b" not in plain
+    assert same == lines
+
+
+def test_an_old_encoding_in_a_terminal():
+    output, lines = shown("list", width=80, PYTHONIOENCODING="ascii")
+    assert output.isascii()
+    assert any(set(line) == {"-"} for line in lines)
+
+
+def test_in_a_pipe_there_are_no_codes_and_columns_stand_side_by_side():
+    command = [sys.executable, "-m", "shadefit", "list"]
+    environment = {**os.environ, "COLUMNS": "30"}
+    text = subprocess.run(
+        command, capture_output=True, text=True, env=environment, check=True
+    ).stdout
+    assert "\x1b" not in text
+    assert re.search(r"^best/q-9 +q +pole-q +1\.270e-05 +1\.764e-05$", text, re.MULTILINE)
+
+
+def test_a_note_is_wrapped_and_an_empty_cell_below_left_out(capsys):
+    print_table(
+        "title", ["name", "rms", "at"], [["a", "1", ""], ["b", "2", "x 1"]], "word " * 40, 1
+    )
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:6] == ["title", "name  rms", "─" * 10, "a       1", "b       2", "    at x 1"]
+    assert max(map(len, lines)) <= 100
+
+
+def test_an_interruption_leaves_one_clean_line(tmp_path):
+    session = Session("refit", "ps", "g", "--out", str(tmp_path))
+    session.read_until("ps: ")
+    session.read_until("g: ")
+    session.type("\x03")
+    assert session.end() == 130
+    lines = [line for line in screen(session.output) if line]
+    assert lines == ["shadefit: interrupted; no file is half written"]
+    # The cursor, which the display hides, is shown again.
+    assert session.output.rfind("\x1b[?25h") > session.output.rfind("\x1b[?25l")
+    assert not list(tmp_path.iterdir())
+
+
+def test_progress_leaves_nothing_on_the_screen(tmp_path):
+    output, lines = shown("refit", "q", "--grid", "9", "--out", str(tmp_path), "--json", width=80)
+    assert "0:00" in output and "q: " in output
+    assert json.loads("\n".join(lines))["tables"][0]["name"] == "q"
