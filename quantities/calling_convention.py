@@ -31,6 +31,8 @@ class Argument:
     * `axis`: the name of the form's axis that the argument stands for.
     * `name`: the name of the argument in the shader.
     * `clamp`: the ends of the form's domain at which the value is clamped.
+    * `least`: the number that a value is clamped to from below, if that is not the lower end of the
+      domain. The code may be called with values between the two, but nothing is stated for them.
     * `local`: the name of the variable in the code that holds the clamped value; None leaves the
       choice to the printer.
     """
@@ -39,6 +41,7 @@ class Argument:
     name: str
     clamp: Literal["both", "above", "none"] = "none"
     local: str | None = None
+    least: float | None = None
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,10 @@ class CallingConvention:
     * `name`: the name of the function that returns the value.
     * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for the form.
     * `arguments`: the arguments of the only function, or of the first of two.
-    * `second`: the names and domains of the second function's arguments after those results.
+    * `second`: the names and domains of the second function's arguments after those results. They
+      are clamped to their domains.
+    * `codomain`: the interval that values are clamped to. None: they are not clamped, because no
+      arguments, rounding included, lead out of the codomain.
     * `columns`: maps points (n, axes) of the form to these arguments (n, …), in NumPy.
     """
 
@@ -61,6 +67,7 @@ class CallingConvention:
     remark: str | None = None
     second: tuple[tuple[str, tuple[float, float]], ...] = ()
     columns: Callable[[Points], Points] | None = None
+    codomain: tuple[float, float] | None = None
 
     def functions(self, fitted: FittedForm) -> tuple[Function, ...]:
         """Return the functions that a fitted form is exported as, in the order of the calls."""
@@ -84,7 +91,7 @@ class CallingConvention:
         form, constants = fitted.form, fitted.constants
 
         def value(*given):
-            return form(jnp.asarray(constants), *self._point(fitted, given))
+            return self._limited(form(jnp.asarray(constants), *self._point(fitted, given)))
 
         summary = self.summary.format(equation=_equation(fitted))
         return function(self.name, self._parameters(fitted), value, summary)
@@ -104,13 +111,22 @@ class CallingConvention:
         call, largest = fitted.form.stages[1].call, _largest_result(fitted)
 
         def value(c, *inputs):
-            return call(c, *inputs)
+            return self._limited(call(c, *self._directed(inputs)))
 
         parameters = (
             Parameter("c", (-largest, largest), size=_result_count(fitted)),
             *(Parameter(name, domain) for name, domain in self.second),
         )
         return function(self.name, parameters, value, fitted.form.stages[1].summary)
+
+    def _directed(self, inputs: tuple[Any, ...]) -> list[Any]:
+        """Clamp the second function's own arguments to their domains."""
+        pairs = zip(inputs, self.second, strict=True)
+        return [_called(clamped(value, *ends), name) for value, (name, ends) in pairs]
+
+    def _limited(self, result: Any) -> Any:
+        """Clamp a result to the codomain, if the convention has one."""
+        return result if self.codomain is None else clamped(result, *self.codomain)
 
     def _place(self, fitted: FittedForm, argument: Argument) -> int:
         return [axis.name for axis in fitted.axes].index(argument.axis)
@@ -150,11 +166,17 @@ def _inside(value: Any, argument: Argument, axis: Axis) -> Any:
     if argument.clamp == "none":
         return value
     if argument.clamp == "both":
-        return _called(_clamped(value, float(axis.lower), float(axis.upper)), argument.local)
+        lower = float(axis.lower) if argument.least is None else argument.least
+        return _called(clamped(value, lower, float(axis.upper)), argument.local)
     return _called(jnp.minimum(value, float(axis.upper)), argument.local)
 
 
-def _clamped(value: Any, lower: float, upper: float) -> Any:
+def clamped(value: Any, lower: float, upper: float) -> Any:
+    """Clamp a traced value to [lower, upper].
+
+    The minimum is taken first: where it is a comparison or returns the number of a number and NaN,
+    as in C and HLSL, NaN becomes `upper`.
+    """
     return jnp.maximum(jnp.minimum(value, upper), lower)
 
 

@@ -6,7 +6,7 @@ import integrals
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
 from integrals.reference import restricted
 from programs.functions import Function, Parameter, function
-from quantities.calling_convention import Argument, CallingConvention
+from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.lights import cosines_at
 from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
@@ -16,6 +16,8 @@ from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, P
 _COSINE = (0.0, 1.0)
 # The error of the closed form in float32 is measured and stated for α from this on.
 LEAST_EXACT_ALPHA = 0.05
+# The code clamps α to this at least. Smaller fourth powers would leave the range of the precision.
+_LEAST_ALPHA = {"half": LEAST_EXACT_ALPHA, "float": 1e-6, "double": 1e-6}
 
 
 def exact_functions(precision: str) -> tuple[Function, ...]:
@@ -26,7 +28,14 @@ def exact_functions(precision: str) -> tuple[Function, ...]:
     steps = FLOAT64_STEPS if precision == "double" else FLOAT32_STEPS
 
     def exact(cos_un, cos_ut, cos_nt, alpha):
-        return scattered_fraction(cos_un, cos_ut, cos_nt, alpha, steps)
+        value = scattered_fraction(
+            clamped(cos_un, *_COSINE),
+            clamped(cos_ut, -1.0, 1.0),
+            clamped(cos_nt, -1.0, 1.0),
+            clamped(alpha, _LEAST_ALPHA[precision], 1.0),
+            steps,
+        )
+        return clamped(value, 0.0, 1.0)
 
     parameters = (
         Parameter("NdotU", _COSINE),
@@ -68,6 +77,8 @@ PS = Problem(
         "What is proven holds for cosines of unit vectors",
         second=(("NdotU", _COSINE), ("TdotU", (-1.0, 1.0))),
         columns=lambda points: np.stack(cosines_at(points)[:2], axis=1),
+        # Cosines that belong to no unit vectors, and rounding, lead out of it.
+        codomain=(0.0, 1.0),
     ),
     closed_form=fraction_at,
     exact_code=ExactCode(

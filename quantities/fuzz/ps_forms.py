@@ -20,7 +20,7 @@ from quantities.fuzz.material import DirectionProofs, material_form
 from shading.types import Scalar
 
 MAX_DEGREE = 4
-# A lower limit of denominators and of λ. It changes no value for unit vectors u, n and t. It avoids
+# A lower limit of denominators, of radicands and of λ. It changes no value for unit vectors u, n and t. It avoids
 # division by zero after rounding, and for cosines that belong to no unit vectors.
 LEAST = 1e-6
 
@@ -53,7 +53,11 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
         c, a = cos_un, cos_ut
-        return 0.5 + _above(m, c, a) / jnp.sqrt(radicand(m, c, a))
+        return 0.5 + _above(m, c, a) / jnp.sqrt(jnp.maximum(radicand(m, c, a), LEAST))
+
+    def unlimited(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Return the form without the lower limit of its radicand."""
+        return 0.5 + _above(m, cos_un, cos_ut) / jnp.sqrt(radicand(m, cos_un, cos_ut))
 
     def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
         """Return r − 4N², where the form is ½ + N/√r (docs/range.md)."""
@@ -75,7 +79,7 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         starts=(flat_start(values, degree, {3: (1.0, 1.7)}),),
         material=material,
         along=along,
-        proofs=DirectionProofs(along, margins, radicand),
+        proofs=DirectionProofs(unlimited, margins, radicand),
     )
 
 
