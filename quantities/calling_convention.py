@@ -5,6 +5,7 @@ and clamps of the arguments. The coefficients become constants, which the printe
 code.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -52,7 +53,7 @@ class CallingConvention:
     first, Calc…Coeffs, returns results that are arguments of the second, which returns the value.
 
     * `name`: the name of the function that returns the value.
-    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for the form.
+    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for ' (Eq. 3)', or nothing.
     * `arguments`: the arguments of the only function, or of the first of two.
     * `second`: the names and domains of the second function's arguments after those results. They
       are clamped to their domains.
@@ -105,24 +106,28 @@ class CallingConvention:
 
         summary = form.stages[0].summary.format(name=self.name)
         name, parameters = f"Calc{self.name}Coeffs", self._parameters(fitted)
-        return function(name, parameters, results, summary, count, "c")
+        return function(name, parameters, results, summary, count, form.stages[0].result_name)
 
     def _second(self, fitted: FittedForm) -> Function:
-        call, largest = fitted.form.stages[1].call, _largest_result(fitted)
+        stage, largest = fitted.form.stages[1], _largest_result(fitted)
+        call = stage.call
 
-        def value(c, *inputs):
-            return self._limited(call(c, *self._directed(inputs)))
+        def value(results, *inputs):
+            return self._limited(call(results, *self._directed(inputs, stage.arguments)))
 
         parameters = (
-            Parameter("c", (-largest, largest), size=_result_count(fitted)),
+            Parameter(fitted.form.stages[0].result_name, (-largest, largest), size=_result_count(fitted)),
             *(Parameter(name, domain) for name, domain in self.second),
         )
         return function(self.name, parameters, value, fitted.form.stages[1].summary)
 
-    def _directed(self, inputs: tuple[Any, ...]) -> list[Any]:
-        """Clamp the second function's own arguments to their domains."""
-        pairs = zip(inputs, self.second, strict=True)
-        return [_called(clamped(value, *ends), name) for value, (name, ends) in pairs]
+    def _directed(self, inputs: tuple[Any, ...], names: tuple[str, ...] | None) -> list[Any]:
+        """Clamp the second function's own arguments to their domains, under the names of a form."""
+        called = names or [name for name, _ in self.second]
+        return [
+            _called(clamped(value, *ends), name)
+            for value, (_, ends), name in zip(inputs, self.second, called, strict=True)
+        ]
 
     def _limited(self, result: Any) -> Any:
         """Clamp a result to the codomain, if the convention has one."""
@@ -174,8 +179,8 @@ def _inside(value: Any, argument: Argument, axis: Axis) -> Any:
 def clamped(value: Any, lower: float, upper: float) -> Any:
     """Clamp a traced value to [lower, upper].
 
-    The minimum is taken first: where it is a comparison or returns the number of a number and NaN,
-    as in C and HLSL, NaN becomes `upper`.
+    Where minima and maxima are comparisons, or return the number if the other argument is NaN, as in
+    C and HLSL, NaN becomes one of the ends.
     """
     return jnp.maximum(jnp.minimum(value, upper), lower)
 
@@ -195,10 +200,9 @@ def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
 
 
 def _equation(fitted: FittedForm) -> str:
-    """Return a form's equation, such as 'Eq. 3', or for a form of a family the family's name."""
-    form = fitted.form
-    short = form.equation.replace("Eq. (", "Eq. ").rstrip(")")
-    return short if form.shape is None else form.name
+    """Return the number of a form's equation in the supplement, ' (Eq. 3)', or nothing."""
+    found = re.fullmatch(r"Eq\. \((\d+)\)", fitted.form.equation)
+    return "" if found is None else f" (Eq. {found[1]})"
 
 
 def _result_count(fitted: FittedForm) -> int:

@@ -32,6 +32,7 @@ LANGUAGE = Language(
     literals={"half": "{}h", "float": "{}f", "double": "{}L"},
     functions={"half": FUNCTIONS, "float": FUNCTIONS, "double": DOUBLE},
     reserved=WORDS,
+    clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     prologue=dict.fromkeys(PRECISIONS, ()),
     array_argument="in {type} {name}[{size}]",
     array_result="out {type} {name}[{size}]",

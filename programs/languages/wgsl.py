@@ -38,6 +38,7 @@ LANGUAGE = Language(
         "where with writeonly yield array atomic bool f16 f32 i32 u32 ptr vec2 vec3 vec4 mat2x2",
         "mat3x3 mat4x4 sampler _",
     ),
+    clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     prologue={"half": ("enable f16;",), "float": ()},
     scalar_argument="{name}: {type}",
     array_argument="{name}: array<{type}, {size}>",

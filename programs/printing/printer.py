@@ -207,8 +207,11 @@ def _taken_names(
     """
     called = {
         word
-        for how in language.functions[precision].values()
-        for word in re.findall(r"[A-Za-z_]\w*", how.template)
+        for template in [
+            *(how.template for how in language.functions[precision].values()),
+            *language.clamps.get(precision, ()),
+        ]
+        for word in re.findall(r"[A-Za-z_]\w*", template)
     }
     own = [parameter.name for parameter in function.parameters]
     if function.result is not None:
