@@ -26,6 +26,7 @@ from programs.cost import Cost as Cost
 from programs.cost import count_operations as count_operations
 from programs.functions import Function as Function
 from programs.functions import Parameter as Parameter
+from programs.functions import Record as Record
 from programs.functions import function as function
 from programs.functions import group_inputs as group_inputs
 from programs.functions import input_names as input_names

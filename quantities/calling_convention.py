@@ -15,10 +15,12 @@ import jax.numpy as jnp
 import numpy as np
 from jax.ad_checkpoint import checkpoint_name
 
-from fitting.form import FittedForm
+from fitting.form import FittedForm, Form
 from integrals.reference import Axis
-from programs.functions import Function, Parameter, function
+from programs.functions import Function, Parameter, Record, function
 
+# The argument of a second function that holds the results of the first.
+MATERIAL = "material"
 # The range of a first stage's results is found on a grid of this many nodes an axis.
 _SAMPLED = 33
 
@@ -34,6 +36,8 @@ class Argument:
     * `clamp`: the ends of the form's domain at which the value is clamped.
     * `least`: the number that a value is clamped to from below, if that is not the lower end of the
       domain. The code may be called with values between the two, but nothing is stated for them.
+    * `cosine`: for an angle, the name of the argument that holds its cosine, if the code takes
+      cosines.
     * `local`: the name of the variable in the code that holds the clamped value; None leaves the
       choice to the printer.
     """
@@ -43,6 +47,7 @@ class Argument:
     clamp: Literal["both", "above", "none"] = "none"
     local: str | None = None
     least: float | None = None
+    cosine: str | None = None
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,10 @@ class CallingConvention:
       are clamped to their domains.
     * `codomain`: the interval that values are clamped to. None: they are not clamped, because no
       arguments, rounding included, lead out of the codomain.
+    * `material`: the name of a structure that can stand for the results of the first function.
+    * `cosines`: whether arguments that are angles are replaced by their cosines.
+    * `record`: the structure that the first of two functions, …Material, returns and the second
+      takes, if the code has that interface. None: it has the interface of the paper's listings.
     * `columns`: maps points (n, axes) of the form to these arguments (n, …), in NumPy.
     """
 
@@ -69,6 +78,9 @@ class CallingConvention:
     second: tuple[tuple[str, tuple[float, float]], ...] = ()
     columns: Callable[[Points], Points] | None = None
     codomain: tuple[float, float] | None = None
+    material: str | None = None
+    cosines: bool = False
+    record: Record | None = None
 
     def functions(self, fitted: FittedForm) -> tuple[Function, ...]:
         """Return the functions that a fitted form is exported as, in the order of the calls."""
@@ -83,10 +95,18 @@ class CallingConvention:
         """
         order = [self._place(fitted, argument) for argument in self.arguments]
         first = points[:, order]
+        first = self.with_cosines(first)
         if fitted.form.inputs is None:
             return (first,)
         assert self.columns is not None
         return first, self.columns(points)
+
+    def with_cosines(self, columns: Points) -> Points:
+        """Replace angles among the arguments (n, …) by their cosines, if the code takes these."""
+        if not self.cosines:
+            return columns
+        angles = [argument.cosine is not None for argument in self.arguments]
+        return np.where(angles, np.cos(columns), columns)
 
     def _only(self, fitted: FittedForm) -> Function:
         form, constants = fitted.form, fitted.constants
@@ -105,8 +125,13 @@ class CallingConvention:
             return tuple(form.first(jnp.asarray(constants), *self._clamped(fitted, given)))
 
         summary = form.stages[0].summary.format(name=self.name)
-        name, parameters = f"Calc{self.name}Coeffs", self._parameters(fitted)
-        return function(name, parameters, results, summary, count, form.stages[0].result_name)
+        name, result_name, record = f"Calc{self.name}Coeffs", form.stages[0].result_name, None
+        if self.record is not None:
+            name, result_name = f"{self.name}Material", MATERIAL
+            record = self._record(form)
+        return function(
+            name, self._parameters(fitted), results, summary, count, result_name, record
+        )
 
     def _second(self, fitted: FittedForm) -> Function:
         stage, largest = fitted.form.stages[1], _largest_result(fitted)
@@ -115,11 +140,19 @@ class CallingConvention:
         def value(results, *inputs):
             return self._limited(call(results, *self._directed(inputs, stage.arguments)))
 
+        name = fitted.form.stages[0].result_name if self.record is None else MATERIAL
+        record, size = self._record(fitted.form), _result_count(fitted)
         parameters = (
-            Parameter(fitted.form.stages[0].result_name, (-largest, largest), size=_result_count(fitted)),
+            Parameter(name, (-largest, largest), size=size, record=record),
             *(Parameter(name, domain) for name, domain in self.second),
         )
         return function(self.name, parameters, value, fitted.form.stages[1].summary)
+
+    def _record(self, form: Form) -> Record | None:
+        """Return the structure, whose members are called as the results are in the equation."""
+        if self.record is None:
+            return None
+        return replace(self.record, member=form.stages[0].result_name)
 
     def _directed(self, inputs: tuple[Any, ...], names: tuple[str, ...] | None) -> list[Any]:
         """Clamp the second function's own arguments to their domains, under the names of a form."""
@@ -142,7 +175,9 @@ class CallingConvention:
     def _parameters(self, fitted: FittedForm) -> tuple[Parameter, ...]:
         pairs = zip(self.arguments, self._axes(fitted), strict=True)
         return tuple(
-            Parameter(argument.name, (float(axis.lower), float(axis.upper)), axis.unit)
+            Parameter(argument.cosine, _cosines(axis))
+            if self.cosines and argument.cosine is not None
+            else Parameter(argument.name, (float(axis.lower), float(axis.upper)), axis.unit)
             for argument, axis in pairs
         )
 
@@ -162,18 +197,27 @@ class CallingConvention:
         values = list(given)
         for k in reversed(range(len(values))):
             # The value is not assigned to a variable: its name would appear in the exported code.
-            values[k] = _inside(values[k], self.arguments[k], self._axes(fitted)[k])
+            values[k] = _inside(values[k], self.arguments[k], self._axes(fitted)[k], self.cosines)
         return values
 
 
-def _inside(value: Any, argument: Argument, axis: Axis) -> Any:
+def _inside(value: Any, argument: Argument, axis: Axis, cosines: bool) -> Any:
     """Clamp one argument. If the convention has a name for the result, the code uses it."""
+    if cosines and argument.cosine is not None:
+        return jnp.arccos(_called(clamped(value, *_cosines(axis)), argument.cosine))
     if argument.clamp == "none":
         return value
     if argument.clamp == "both":
         lower = float(axis.lower) if argument.least is None else argument.least
         return _called(clamped(value, lower, float(axis.upper)), argument.local)
     return _called(jnp.minimum(value, float(axis.upper)), argument.local)
+
+
+def _cosines(axis: Axis) -> tuple[float, float]:
+    """Return the domain of the cosine of an angle in [0, π]."""
+    # cos(π/2) is 0 but for the rounding of π.
+    least, largest = (round(float(np.cos(end)), 15) for end in (axis.upper, axis.lower))
+    return least, largest
 
 
 def clamped(value: Any, lower: float, upper: float) -> Any:
@@ -193,7 +237,11 @@ def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
     """Rename the last function, which returns the value, to `name`, and a first one accordingly."""
     *before, last = functions
     changed = [
-        replace(each, name=f"Calc{name}Coeffs", summary=each.summary.replace(last.name, name))
+        replace(
+            each,
+            name=f"{name}Material" if each.record is not None else f"Calc{name}Coeffs",
+            summary=each.summary.replace(last.name, name),
+        )
         for each in before
     ]
     return (*changed, replace(last, name=name))

@@ -83,6 +83,19 @@ class Language:
     return_all: str | None = None
     # precision -> how max(min(x, {2}), {1}) is written: a template for any ends, and one for 0 and 1
     clamps: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    # precision -> type of a vector of four numbers
+    vectors: Mapping[str, str] = field(default_factory=dict)
+    # around the members of a structure: {name}; None: the language has tuples or arrays instead
+    record_opening: str | None = "struct {name} {{"
+    record_closing: str = "}};"
+    # members of a structure: {type}, {name} and, for arrays, {size}
+    record_number: str = "{type} {name};"
+    record_array: str = "{type} {name}[{size}];"
+    # a structure without a value yet: {type}, {name}
+    record_variable: str = "{type} {name};"
+    # whether code can be in a namespace; whether there is a preprocessor for an include guard
+    namespaces: bool = False
+    preprocessor: bool = True
     # around the array of constants: {type}, {name}, {size}
     table_opening: str = "static const {type} {name}[{size}] = {{"
     table_closing: str = "}};"

@@ -33,6 +33,10 @@ SLACK = 8.0
 # In units in the last place: allowed even if every operation happens to be exact in NumPy.
 LEAST_UNITS = 4.0
 
+# Half precision is good enough if every value is finite and rounding moves none by more than this
+# part of the largest value. Values of the quantities are fractions, so it is about two per cent.
+HALF_SHARE = 0.02
+
 # Evaluates one function at rows of inputs (n, k): values (n, m)
 Run = Callable[[Function, np.ndarray], np.ndarray]
 
@@ -92,9 +96,10 @@ class Difference:
 
 @dataclass(frozen=True)
 class Check:
-    """The result of verifying one language; `status` is "passed", "failed" or "not checked".
+    """The result of verifying one language.
 
-    `reason` says why the status is not "passed". `form` is the difference from the float64 program
+    `status` is "passed", "failed", "not checked" or, only in half precision, "not good enough": the
+    code is right, but its rounding moves values too far (`Trial.half_allowed`). `reason` says why the status is not "passed". `form` is the difference from the float64 program
     at the same rounded inputs, `units` the same in units in the last place of the program's value,
     and `allowed` the largest `form` that passes. `integral` is the difference from the exact values
     at `integral_points` points, or None if there are no exact values.
@@ -188,6 +193,12 @@ class Trial:
             raise ValueError("exact is None; allowed here: a function that returns exact values")
         return self.exact(self.points[: self.exact_points])
 
+    @property
+    def half_allowed(self) -> Difference:
+        """The difference from `form` with which half precision is good enough."""
+        largest = HALF_SHARE * float(np.max(np.abs(self.form)))
+        return Difference(largest, largest, 0)
+
     def against_integral(self, values: np.ndarray) -> Difference:
         """Return the difference of values (n,) from the exact values, where these are known."""
         return difference(values[: len(self.integral)], self.integral)
@@ -261,11 +272,14 @@ def check(trial: Trial, key: str) -> Check:
     spacing = np.spacing(np.abs(trial.form).astype(PRECISIONS[precision])).astype(np.float64)
     passed = apart.within(trial.allowed)
     known = trial.exact is not None
+    coarse = precision == "half" and not apart.within(trial.half_allowed)
+    status = "failed" if not passed else "not good enough" if coarse else "passed"
+    limit = trial.half_allowed if passed else trial.allowed
     return Check(
         key,
         precision,
-        "passed" if passed else "failed",
-        None if passed else _why_failed(apart, trial.allowed),
+        status,
+        None if status == "passed" else _why_not(apart, limit),
         chain.tool,
         chain.note,
         len(values),
@@ -277,11 +291,23 @@ def check(trial: Trial, key: str) -> Check:
     )
 
 
-def _why_failed(apart: Difference, allowed: Difference) -> str:
+def _why_not(apart: Difference, allowed: Difference) -> str:
     return f"differs from the float64 form by {text_of(apart)}; allowed: {text_of(allowed)}"
 
 
 def text_of(apart: Difference) -> str:
-    """Write a difference with two digits; more digits would change with the compiler's version."""
+    """Write a difference with two digits, rounded up.
+
+    More digits would change with the compiler's version.
+    """
     others = f", {apart.not_finite} values not finite" if apart.not_finite else ""
-    return f"rms {apart.rms:.1e}, largest {apart.largest:.1e}{others}"
+    return f"rms {rounded_up(apart.rms)}, largest {rounded_up(apart.largest)}{others}"
+
+
+def rounded_up(value: float) -> str:
+    """Write a number that is not negative with two digits, rounded up: 0.13323 as '1.4e-01'."""
+    # A multiple of the second digit that a float cannot hold may be above it by one rounding.
+    text = f"{value:.1e}"
+    if float(text) >= value * (1 - 1e-12):
+        return text
+    return f"{float(text) + 10.0 ** (int(text.partition('e')[2]) - 1):.1e}"

@@ -18,7 +18,7 @@ class Builder:
     x/1, x±0, x/2, −(−x), x+(−y), abs(−x), abs(max(x, 0)), max(max(x, 1), 2) and a selection that is
     a minimum are simplified. Every
     simplification leaves each finite result unchanged to the last bit, except for the sign of a
-    zero. Sums and products are therefore never re-associated.
+    zero, and except for the cosine and sine of an arc cosine, which become more precise. Sums and products are therefore never re-associated.
     """
 
     def __init__(self, inputs: Sequence[str], limit: int):
@@ -93,6 +93,8 @@ class Builder:
             simplest = self._simplify_bounds(operation, value, constant)
         elif operation == "select":
             simplest = self._simplify_selection(*operands)
+        elif operation in ("cos", "sin"):
+            simplest = self._simplify_angle(operation, operands[0])
         else:
             simplest = self._simplify_signs(operation, operands)
         return simplest
@@ -119,6 +121,14 @@ class Builder:
         if _same(yes, right) and _same(no, left):
             return self.apply(larger, left, right)
         return None
+
+    def _simplify_angle(self, operation: str, angle: Operand) -> Operand | None:
+        """Make cos(acos(x)) x, and sin(acos(x)) the root of 1 − x²: no angle is needed."""
+        cosine = self._operand_of("acos", angle)
+        if cosine is None or operation == "cos":
+            return cosine
+        factors = self.apply("sub", 1.0, cosine), self.apply("add", 1.0, cosine)
+        return self.apply("sqrt", self.apply("mul", *factors))
 
     def _simplify_bounds(self, operation: str, value: Operand, bound: float) -> Operand | None:
         """Make one bound of two: max(max(x, 1), 2) is max(x, 2)."""

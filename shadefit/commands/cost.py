@@ -31,7 +31,7 @@ def cost(
     The closed form is counted too if the table's form has two stages (ps).
     """
     from coefficients.catalogue import resolve
-    from coefficients.exported_code import closed_form_beside, costs
+    from coefficients.code_header import closed_form_beside, costs
     from programs import KINDS, measure_throughput
     from shadefit.terminal import print_json, print_table
 
