@@ -36,9 +36,7 @@ def cost_text(cost: Cost) -> str:
     return f"{cost.operations} operations ({', '.join(kinds)}{fused})"
 
 
-def header_of(
-    entry: Entry, trial: Trial, key: str, source: str, command: str
-) -> dict[str, str]:
+def header_of(entry: Entry, trial: Trial, key: str, source: str, command: str) -> dict[str, str]:
     """Return the labels and texts of the comment above an entry's exported functions.
 
     Arguments: `trial`, with the functions and the precision; `key`, a key of LANGUAGES; `source`,
@@ -124,7 +122,8 @@ def _verdict(trial: Trial, values: np.ndarray) -> str:
     """Say whether half precision is good enough: the same rule as that of `shadefit verify`."""
     apart, allowed = difference(values, trial.form), trial.half_allowed
     good = apart.within(allowed)
+    verdict = "good enough" if good else "NOT GOOD ENOUGH"
     return (
-        f"{'good enough' if good else 'NOT GOOD ENOUGH'}: rounding moves values by {text_of(apart)} "
+        f"{verdict}: rounding moves values by {text_of(apart)} "
         f"(allowed: {allowed.largest:.2g}, {HALF_SHARE:.0%} of the largest value)"
     )

@@ -44,9 +44,10 @@ def shaped(entry: Entry, options: CodeOptions) -> Entry:
     if options.interface == "material" and calling.material is not None:
         record = Record(calling.material, options.layout)
     remark = calling.remark
-    for argument in calling.arguments if options.cosines and remark else ():
-        if argument.cosine is not None:
-            remark = remark.replace(argument.name, f"acos({argument.cosine})")
+    if options.cosines and remark is not None:
+        for argument in calling.arguments:
+            if argument.cosine is not None:
+                remark = remark.replace(argument.name, f"acos({argument.cosine})")
     calling = replace(calling, cosines=options.cosines, record=record, remark=remark)
     if exact is not None and exact.staged is not None and record is not None:
         staged, angles = exact.staged, calling
@@ -79,7 +80,9 @@ def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
     callings = [each.calling for each in problems]
     names = ", ".join(dict.fromkeys(each.name for each in problems))
     if options.layout != "array" and options.interface != "material":
-        raise ValueError(f"layout {options.layout!r} is for structures: allowed with interface material")
+        raise ValueError(
+            f"layout {options.layout!r} is for structures: allowed with interface material"
+        )
     if options.interface == "material" and all(each.material is None for each in callings):
         raise ValueError(f"interface 'material' is for tables of two functions: {names} has one")
     if options.cosines and not any(a.cosine for each in callings for a in each.arguments):

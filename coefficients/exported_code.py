@@ -133,7 +133,7 @@ def source_file(
 def _guard(
     entries: Sequence[Entry], precision: str | None, function_name: str | None, prefix: str
 ) -> str:
-    """Return the name of an include guard, which differs for files that have different functions."""
+    """Return the name of an include guard, different for files of different functions."""
     names = [entry.name for entry in entries]
     parts = ["shadefit", prefix, *names, function_name or "", precision or ""]
     return re.sub(r"[^A-Z0-9]+", "_", "_".join(parts).upper()).strip("_")

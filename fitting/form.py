@@ -79,7 +79,8 @@ class Form:
     * `starts`: coefficients that a fit may start from. None of them is from a published table.
     * `shape`: the arguments that make this form in its family; None for a form of no family.
     * `solver`: fits the form on a grid (`fitting/solvers`); None stands for the general `OnGrid`.
-    * `notation`: a text for the header of exported code, which says what names in the equation mean.
+    * `notation`: a text for the header of exported code, which says what names in the equation
+      mean.
     * `has_least_error`: whether to look for a lower bound of the largest error. There is one only
       for a form that is a quotient of linear functions of its coefficients.
     """

@@ -41,9 +41,9 @@ class Parameter:
 
     `name` is the identifier that appears in the shader. `domain` is the closed interval (low, high)
     that the function is made for, in `unit`; for an array it holds for each element. `size` is None
-    for a scalar and n for an array of n numbers. If the array is the content of a structure, that is
-    `record`. Raises ValueError for a name that is not an
-    identifier, for an empty or infinite domain, and for a size below one.
+    for a scalar and n for an array of n numbers. If the array is the content of a structure, that
+    is `record`. Raises ValueError for a name that is not an identifier, for an empty or infinite
+    domain, and for a size below one.
     """
 
     name: str
@@ -70,8 +70,9 @@ class Function:
     `call` takes its arguments in the order of `parameters`: a scalar for each scalar parameter, a
     tuple of scalars for each array. If `result` is None, it returns one scalar. Otherwise it
     returns a tuple of `result` scalars, and printed code stores them in an array that is called
-    `result_name`, or return them in a structure `record`. `summary` is one line for the comment above the code. Raises ValueError for names
-    that are not identifiers or that occur twice, and for a `result` below one.
+    `result_name`, or returns them in a structure `record`. `summary` is one line for the comment
+    above the code. Raises ValueError for names that are not identifiers or that occur twice, and
+    for a `result` below one.
     """
 
     name: str
@@ -108,7 +109,8 @@ def function(
     Arguments: `name` and `parameters`, as they appear in the shader; `call`, the JAX function;
     `summary`, one line for the comment above the code; `result`, None for a scalar result, else the
     number of results, which are stored in an array that is called `result_name`, or returned in a
-    `record`. Returns the function. Raises ValueError for names that are not identifiers or that occur twice.
+    `record`. Returns the function. Raises ValueError for names that are not identifiers or that
+    occur twice.
     """
     text = summary or f"{name}."
     return Function(name, text, tuple(parameters), result, result_name, call, record)

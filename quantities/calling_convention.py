@@ -58,7 +58,8 @@ class CallingConvention:
     first, Calc…Coeffs, returns results that are arguments of the second, which returns the value.
 
     * `name`: the name of the function that returns the value.
-    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for ' (Eq. 3)', or nothing.
+    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for ' (Eq. 3)', or
+      nothing.
     * `arguments`: the arguments of the only function, or of the first of two.
     * `second`: the names and domains of the second function's arguments after those results. They
       are clamped to their domains.
@@ -223,8 +224,8 @@ def _cosines(axis: Axis) -> tuple[float, float]:
 def clamped(value: Any, lower: float, upper: float) -> Any:
     """Clamp a traced value to [lower, upper].
 
-    Where minima and maxima are comparisons, or return the number if the other argument is NaN, as in
-    C and HLSL, NaN becomes one of the ends.
+    Where minima and maxima are comparisons, or return the number if the other argument is NaN, as
+    in C and HLSL, NaN becomes one of the ends.
     """
     return jnp.maximum(jnp.minimum(value, upper), lower)
 

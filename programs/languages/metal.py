@@ -24,7 +24,9 @@ LANGUAGE = Language(
         "half half2 half3 half4 float2 float3 float4 uint uchar ushort ulong sampler texture2d",
         "array vec access ray_data object_data",
     ),
-    clamps=dict.fromkeys(("half", "float"), ("metal::clamp({0}, {1}, {2})", "metal::saturate({0})")),
+    clamps=dict.fromkeys(
+        ("half", "float"), ("metal::clamp({0}, {1}, {2})", "metal::saturate({0})")
+    ),
     scalar_head="inline {type} {function}({arguments})",
     array_head="inline void {function}({arguments})",
     vectors={"half": "half4", "float": "float4"},

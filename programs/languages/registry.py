@@ -77,7 +77,9 @@ def language_of_file(name: str) -> str | None:
     suffix = name.rpartition(".")[2].lower() if "." in name else ""
     if suffix in _AMBIGUOUS:
         allowed = ", ".join(SUFFIXES[suffix])
-        raise ValueError(f".{suffix} is the suffix of several languages; allowed with --to: {allowed}")
+        raise ValueError(
+            f".{suffix} is the suffix of several languages; allowed with --to: {allowed}"
+        )
     return SUFFIXES[suffix][0] if suffix in SUFFIXES else None
 
 

@@ -81,7 +81,8 @@ class Language:
     store_statement: str = "{name}[{index}] = {value};"
     # returns several results together: {values}; None: they are stored one by one
     return_all: str | None = None
-    # precision -> how max(min(x, {2}), {1}) is written: a template for any ends, and one for 0 and 1
+    # precision -> how max(min(x, {2}), {1}) is written: a template for any two ends, and
+    # one for 0 and 1
     clamps: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     # precision -> type of a vector of four numbers
     vectors: Mapping[str, str] = field(default_factory=dict)

@@ -43,7 +43,9 @@ def _ascii(character: str) -> str:
 
 def as_identifier(text: str) -> str:
     """Turn text into an ASCII identifier, which may be empty: no leading or double underscores."""
-    word = re.sub(r"\W", "_", ascii_text(text).replace("^", ""))
+    # material.m[3] becomes m3, and c[3] becomes c3.
+    member = re.sub(r"\[(\d+)\]", r"\1", text.partition(".")[2] or text)
+    word = re.sub(r"\W", "_", ascii_text(member).replace("^", ""))
     return re.sub(r"__+", "_", word).strip("_").lstrip("0123456789")
 
 

@@ -85,7 +85,9 @@ def write_sections(
         if names.count(name) > 1:
             raise ValueError(f"function name {name!r} occurs twice; allowed: once")
     if namespace is not None and not spelled.namespaces:
-        raise ValueError(f"namespace {namespace!r} is not possible in {spelled.name}; allowed: none")
+        raise ValueError(
+            f"namespace {namespace!r} is not possible in {spelled.name}; allowed: none"
+        )
     blocks = [header_comment(spelled, sections[0].header)] if sections[0].header else []
     guarded = guard is not None and spelled.preprocessor
     blocks += [[f"#ifndef {guard}", f"#define {guard}"]] if guarded else []
@@ -157,7 +159,7 @@ def _results(function: Function, context: WritingContext) -> list[str]:
         for index, value in enumerate(values):
             place = f"{name}.{record.place(index)}"
             lines += _statement(language, _STORE, value, place=place)
-        zero = [literal(context, 0.0)]
+        zero: Tokens = [literal(context, 0.0)]
         for place in empty_components(record, len(values)):
             lines += _statement(language, _STORE, zero, place=f"{name}.{place}")
         return lines + _statement(language, language.return_statement, [name])

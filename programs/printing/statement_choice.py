@@ -21,7 +21,7 @@ MAX_NESTED_CALLS = 4
 # A value that is used once keeps its author's name if it takes at least this many operations.
 MIN_OPERATIONS_TO_NAME = 3
 # Operation -> the name of a result that neither the author nor its operands name
-NOUNS = {
+NOUNS: dict[str, str] = {
     operation: noun
     for noun, operations in {
         "sum": "add",
@@ -129,8 +129,8 @@ def _wanted_name(program: Program, value: int, names: dict[int, str]) -> str | N
 def _clamped_input(program: Program, step: Step) -> str | None:
     """Return the name of the input that a step clamps; None if it does not clamp an input.
 
-    A clamp consists of a minimum and a maximum. If an author's hint has the name of an input, one of
-    the two is enough.
+    A clamp consists of a minimum and a maximum. If an author's hint has the name of an input, one
+    of the two is enough.
     """
     first, hint = len(program.inputs), camel_case(as_identifier(step.hint or ""))
     if step.operation not in ("min", "max"):

@@ -99,10 +99,11 @@ class Check:
     """The result of verifying one language.
 
     `status` is "passed", "failed", "not checked" or, only in half precision, "not good enough": the
-    code is right, but its rounding moves values too far (`Trial.half_allowed`). `reason` says why the status is not "passed". `form` is the difference from the float64 program
-    at the same rounded inputs, `units` the same in units in the last place of the program's value,
-    and `allowed` the largest `form` that passes. `integral` is the difference from the exact values
-    at `integral_points` points, or None if there are no exact values.
+    code is right, but its rounding moves values too far (`Trial.half_allowed`). `reason` says why
+    the status is not "passed". `form` is the difference from the float64 program at the same
+    rounded inputs, `units` the same in units in the last place of the program's value, and
+    `allowed` the largest `form` that passes. `integral` is the difference from the exact values at
+    `integral_points` points, or None if there are no exact values.
     """
 
     language: str

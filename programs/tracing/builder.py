@@ -16,9 +16,9 @@ class Builder:
 
     Operations on constants are folded, equal steps are shared, and expressions such as x·1, x·0,
     x/1, x±0, x/2, −(−x), x+(−y), abs(−x), abs(max(x, 0)), max(max(x, 1), 2) and a selection that is
-    a minimum are simplified. Every
-    simplification leaves each finite result unchanged to the last bit, except for the sign of a
-    zero, and except for the cosine and sine of an arc cosine, which become more precise. Sums and products are therefore never re-associated.
+    a minimum are simplified. Every simplification leaves each finite result unchanged to the last
+    bit, except for the sign of a zero, and except for the cosine and sine of an arc cosine, which
+    become more precise. Sums and products are therefore never re-associated.
     """
 
     def __init__(self, inputs: Sequence[str], limit: int):

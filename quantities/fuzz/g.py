@@ -9,7 +9,6 @@ from quantities.fuzz.g_forms import AXES, DECAYS, FACTORS, RATES, candidates, de
 from quantities.fuzz.supplement import RATIONAL_G
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
 
-
 # The closed form takes logarithms of the density. The code clamps it to this at least; for a layer
 # so thin, G is at most a thousandth (in half precision a sixteenth) at the least v·n of the domain.
 _LEAST_DENSITY = {"half": 2.0**-14, "float": 1e-6, "double": 1e-6}

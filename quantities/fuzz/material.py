@@ -80,7 +80,9 @@ def material_form(
                 "What {name} needs to know of one material; clamps to the domain.",
                 result_name="m",
             ),
-            Stage(along, "P_s for one direction of light; clamps to the domain.", arguments=("c", "a")),
+            Stage(
+                along, "P_s for one direction of light; clamps to the domain.", arguments=("c", "a")
+            ),
         ),
         shared=2,
         inputs=cosines_of_light,

@@ -21,8 +21,8 @@ from quantities.fuzz.material import DirectionProofs, material_form
 from shading.types import Scalar
 
 MAX_DEGREE = 4
-# A lower limit of denominators, of radicands and of λ. It changes no value for unit vectors u, n and t. It avoids
-# division by zero after rounding, and for cosines that belong to no unit vectors.
+# A lower limit of denominators, of radicands and of λ. It changes no value for unit vectors u, n
+# and t. It avoids division by zero after rounding, and for cosines that belong to no unit vectors.
 LEAST = 1e-6
 
 
@@ -214,8 +214,8 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         return (*m, u * beta * square)
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        # notation: c, a, S, T, E and e as above, root is λ; the cubic is λ³ + (E + 2T) λ² + wλ − E, with
-        # w = T² − S².
+        # notation: c, a, S, T, E and e as above, root is λ; the cubic is λ³ + (E + 2T) λ² + wλ − E,
+        # with w = T² − S².
         c, a = cos_un, cos_ut
         sigma2 = 1 - m[0] * a * a
         S = m[4] * jnp.sqrt(sigma2)

@@ -9,7 +9,6 @@ from quantities.fuzz.q_forms import AXES, STRUCTURES, candidates, pole_q
 from quantities.fuzz.supplement import QUADRATIC_Q
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
 
-
 # From this density on, exp(−d) is below the rounding of float64.
 _OPAQUE = 64.0
 

@@ -21,7 +21,7 @@ def export(
     to: Annotated[
         str | None,
         typer.Option(
-            help="Language of the code, or json; by default that of the suffix of --output, or json.",
+            help="Language of the code, or json; by default that of --output's suffix, or json.",
             metavar="LANG",
             autocompletion=complete_language,
         ),
@@ -48,8 +48,8 @@ def export(
     interface: Annotated[
         Literal["listing", "material"] | None,
         typer.Option(
-            help="listing: the functions of the paper's listings, whose arrays differ from table to "
-            "table. material: FuzzPsMaterial returns a structure and FuzzPs takes it, the same for "
+            help="listing: the functions of the paper's listings, with arrays that differ between "
+            "tables. material: FuzzPsMaterial returns a structure and FuzzPs takes it, the same for "
             "every table of P_s and its closed form. By default listing."
         ),
     ] = None,
@@ -61,7 +61,8 @@ def export(
         ),
     ] = None,
     cosines: Annotated[
-        bool, typer.Option("--cosines", help="Take NdotT, the cosine, in place of the angle thetaF.")
+        bool,
+        typer.Option("--cosines", help="Take NdotT, the cosine, in place of the angle thetaF."),
     ] = False,
     prefix: Annotated[
         str | None, typer.Option(help="What names of functions and structures begin with.")
@@ -99,7 +100,9 @@ def export(
             if given is not None:
                 raise ValueError(f"--{option} {given!r} is for code: allowed with --to LANG")
         if len(tables) > 1:
-            raise ValueError(f"{len(tables)} tables are for code: JSON is of one; allowed: --to LANG")
+            raise ValueError(
+                f"{len(tables)} tables are for code: JSON is of one; allowed: --to LANG"
+            )
         text = serialise(resolve(tables[0]).require_table())
     else:
         options = CodeOptions(

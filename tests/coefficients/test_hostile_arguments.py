@@ -19,7 +19,15 @@ TABLES = [entry.name for entry in entries()]
 EXACT = [f"exact/{owner.name}" for owner in problems().values() if owner.exact_code is not None]
 # One table of each form, and the closed forms: their C is compiled and run.
 COMPILED = ["published/ps", "best/ps-11", "best/ps-25", "best/ps-40", "best/ps-61-wide", "g"]
-COMPILED += ["best/g-17", "best/g-19", "best/q-12-log", "best/r-45", "velvet", "exact/ps", "exact/g"]
+COMPILED += [
+    "best/g-17",
+    "best/g-19",
+    "best/q-12-log",
+    "best/r-45",
+    "velvet",
+    "exact/ps",
+    "exact/g",
+]
 # Of the results of a first function, so many different ones are given to the second.
 MATERIALS = 40
 ROWS = 10_000
