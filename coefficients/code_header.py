@@ -21,7 +21,8 @@ from programs import (
     toolchain,
     trace,
 )
-from programs.toolchains.verification import HALF_SHARE, difference, run_code, text_of
+from programs.toolchains.difference import difference, text_of
+from programs.toolchains.verification import HALF_SHARE, run_code
 
 
 def costs(functions: Sequence[Function]) -> dict[str, Cost]:

@@ -12,7 +12,8 @@ from programs.toolchains.shader import STORED, main_body
 
 NOTE = (
     "GLSL 4.50, GLSL ES 3.10; the device's inverse trigonometric functions may be off by 4e-4, its "
-    "exp, log and pow by several units in the last place; GLSL has no double exp, log, pow or trigonometry."
+    "exp, log and pow by several units in the last place; GLSL has no double exp, log, pow or "
+    "trigonometry."
 )
 
 _REAL = {"half": "float16_t", "float": "float", "double": "double"}

@@ -24,6 +24,7 @@ from programs.languages import PRECISIONS, language
 from programs.precision import number_type
 from programs.printing.printer import write_source
 from programs.program import Program, evaluate
+from programs.toolchains.difference import Difference, difference, text_of
 from programs.toolchains.process import ToolchainError
 from programs.toolchains.registry import toolchain
 from programs.tracing.tracer import trace
@@ -72,26 +73,6 @@ class CallSequence:
 
     functions: tuple[Function, ...]
     columns: Callable[[np.ndarray], tuple[np.ndarray, ...]]
-
-
-@dataclass(frozen=True)
-class Difference:
-    """The largest and the rms difference of the finite values from the expected values.
-
-    `not_finite` is the number of other values: near a pole, a denominator may be rounded to zero.
-    """
-
-    largest: float
-    rms: float
-    not_finite: int = 0
-
-    def within(self, other: "Difference") -> bool:
-        """Return whether no field of this difference is larger than that of the other."""
-        return (
-            self.largest <= other.largest
-            and self.rms <= other.rms
-            and self.not_finite <= other.not_finite
-        )
 
 
 @dataclass(frozen=True)
@@ -220,24 +201,6 @@ def corners(axes: Sequence[DomainAxis]) -> np.ndarray:
     return np.array(list(product(*lines)), np.float64)
 
 
-def difference(
-    values: np.ndarray, expected: np.ndarray, units: np.ndarray | None = None
-) -> Difference:
-    """Return the difference of values (n,) from expected ones, which are finite.
-
-    It is divided by `units` (n,), if given.
-    """
-    finite = np.isfinite(values)
-    apart = np.abs(values[finite] - expected[finite])
-    apart = apart if units is None else apart / units[finite]
-    count = max(len(apart), 1)
-    return Difference(
-        float(np.max(apart, initial=0.0)),
-        float(np.sqrt(np.sum(apart**2) / count)),
-        int(np.sum(~finite)),
-    )
-
-
 def run_code(trial: Trial, key: str, source: str) -> np.ndarray:
     """Compile and run the code of a trial's functions, in the language `key`: values (n,).
 
@@ -294,21 +257,3 @@ def check(trial: Trial, key: str) -> Check:
 
 def _why_not(apart: Difference, allowed: Difference) -> str:
     return f"differs from the float64 form by {text_of(apart)}; allowed: {text_of(allowed)}"
-
-
-def text_of(apart: Difference) -> str:
-    """Write a difference with two digits, rounded up.
-
-    More digits would change with the compiler's version.
-    """
-    others = f", {apart.not_finite} values not finite" if apart.not_finite else ""
-    return f"rms {rounded_up(apart.rms)}, largest {rounded_up(apart.largest)}{others}"
-
-
-def rounded_up(value: float) -> str:
-    """Write a number that is not negative with two digits, rounded up: 0.13323 as '1.4e-01'."""
-    # A multiple of the second digit that a float cannot hold may be above it by one rounding.
-    text = f"{value:.1e}"
-    if float(text) >= value * (1 - 1e-12):
-        return text
-    return f"{float(text) + 10.0 ** (int(text.partition('e')[2]) - 1):.1e}"

@@ -48,9 +48,9 @@ def export(
     interface: Annotated[
         Literal["listing", "material"] | None,
         typer.Option(
-            help="listing: the functions of the paper's listings, with arrays that differ between "
-            "tables. material: FuzzPsMaterial returns a structure and FuzzPs takes it, the same for "
-            "every table of P_s and its closed form. By default listing."
+            help="listing: the functions of the paper, with arrays that differ between tables. "
+            "material: FuzzPsMaterial returns a structure and FuzzPs takes it, the same for every "
+            "table of P_s and its closed form. By default listing."
         ),
     ] = None,
     layout: Annotated[

@@ -10,18 +10,9 @@ from programs.functions import Parameter, function
 from programs.languages import LANGUAGES, precision_of
 from programs.printing.printer import write_source
 from programs.toolchains import ToolchainError, toolchain, verification
+from programs.toolchains.difference import Difference, difference, rounded_up, text_of
 from programs.toolchains.interface import Toolchain
-from programs.toolchains.verification import (
-    CallSequence,
-    Difference,
-    Trial,
-    check,
-    corners,
-    difference,
-    rounded_up,
-    run_code,
-    text_of,
-)
+from programs.toolchains.verification import CallSequence, Trial, check, corners, run_code
 
 UNIT = (0.0, 1.0)
 WAVE = function(
