@@ -25,6 +25,7 @@ class CodeOptions:
     * `cosines`: whether arguments that are angles are replaced by their cosines.
     * `prefix`: what the names of functions and structures begin with.
     * `namespace`: that of all functions, in languages that have namespaces.
+    * `bundle`: a program that hosts shaders, whose entry points are added (`coefficients.bundles`).
     """
 
     interface: Interface = "listing"
@@ -32,6 +33,7 @@ class CodeOptions:
     cosines: bool = False
     prefix: str = ""
     namespace: str | None = None
+    bundle: str | None = None
 
 
 DEFAULTS = CodeOptions()
@@ -68,7 +70,7 @@ def shaped(entry: Entry, options: CodeOptions) -> Entry:
 def words_of(options: CodeOptions) -> list[str]:
     """Return the words of a command line that stand for options, but for those by default."""
     words = []
-    for name in ("interface", "layout", "prefix", "namespace"):
+    for name in ("interface", "layout", "prefix", "namespace", "bundle"):
         value = getattr(options, name)
         if value != getattr(DEFAULTS, name):
             words += [f"--{name}", value]
@@ -83,7 +85,8 @@ def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
         raise ValueError(
             f"layout {options.layout!r} is for structures: allowed with interface material"
         )
-    if options.interface == "material" and all(each.material is None for each in callings):
+    one_call = options.bundle is None and all(each.material is None for each in callings)
+    if options.interface == "material" and one_call:
         raise ValueError(f"interface 'material' is for tables of two functions: {names} has one")
     if options.cosines and not any(a.cosine for each in callings for a in each.arguments):
         raise ValueError(f"cosines stand for angles: {names} takes no angle")

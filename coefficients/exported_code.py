@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from coefficients.bundles import bundle
 from coefficients.catalogue import Entry
 from coefficients.code_header import header_of
 from coefficients.code_options import DEFAULTS, CodeOptions, prefixed, require_use, shaped, words_of
@@ -92,6 +93,7 @@ def source_file(
     machine, the same call returns the same bytes. Raises ValueError for what cannot be written.
     """
     listed = [entries] if isinstance(entries, Entry) else list(entries)
+    hosted = None if options.bundle is None else bundle(options.bundle)
     if function_name is not None and len(listed) > 1:
         raise ValueError(f"name {function_name!r} is for one table; allowed for more: prefix")
     spelled = language(key)
@@ -99,6 +101,11 @@ def source_file(
     require_use(options, [entry.problem for entry in listed])
     chosen = [shaped(entry, options) for entry in listed]
     called = [prefixed(each.functions(kind, function_name), options.prefix) for each in chosen]
+    if hosted is not None and (spelled.key, kind) != (hosted.language, "float"):
+        raise ValueError(
+            f"bundle {options.bundle!r} is not for {spelled.name} in {kind}: allowed is "
+            f"{hosted.language} in float"
+        )
     guard = _guard(listed, precision, function_name, options.prefix)
 
     def written(headers: Sequence[Mapping[str, str]]) -> str:
@@ -109,6 +116,7 @@ def source_file(
             constants=constants,
             guard=guard,
             namespace=options.namespace,
+            ending=[] if hosted is None else hosted.code(called),
         )
 
     # The source is first written without its header: if that is not possible, no time is spent on

@@ -65,11 +65,13 @@ def write_sections(
     constants: str = "inline",
     guard: str | None = None,
     namespace: str | None = None,
+    ending: Sequence[list[str]] = (),
 ) -> str:
     """Write groups of functions as one source file, each group under a header of its own.
 
     Arguments: `sections`; `guard`, the name of an include guard, which a language without a
-    preprocessor ignores; `namespace`, that of all functions; the rest as in `write_source`. Returns
+    preprocessor ignores; `namespace`, that of all functions; `ending`, blocks of lines
+    after the functions; the rest as in `write_source`. Returns
     the source. Raises ValueError as `write_source` does, and for a namespace in a language without.
     """
     spelled = find_language(language) if isinstance(language, str) else language
@@ -103,6 +105,7 @@ def write_sections(
         for function in section.functions:
             taken = _taken_names(spelled, precision, function, names)
             blocks.append(_function(function, spelled, precision, constants, taken))
+    blocks += ending
     blocks += [[f"}} {spelled.comment} namespace {namespace}"]] if namespace is not None else []
     blocks += [[f"#endif {spelled.comment} {guard}"]] if guarded else []
     return "\n\n".join("\n".join(block) for block in blocks) + "\n"

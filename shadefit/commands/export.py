@@ -70,18 +70,29 @@ def export(
     namespace: Annotated[
         str | None, typer.Option(help="Namespace of the functions (cpp, cuda, hlsl, metal, slang).")
     ] = None,
+    bundle: Annotated[
+        str | None,
+        typer.Option(
+            help="shadertoy, unity or unreal: a file for this program, with its entry points, in "
+            "its language, and with --interface material.",
+            metavar="HOST",
+        ),
+    ] = None,
 ) -> None:
     """Write a table as JSON, or tables as code in a language.
 
     The code is run if its compiler is installed. Its header states the error
     that was measured.
     """
+    from coefficients.bundles import language_of_bundle
     from coefficients.catalogue import resolve
     from coefficients.code_options import CodeOptions
     from coefficients.exported_code import source_file
     from coefficients.files import require_writable_file, write_whole
     from coefficients.table import serialise
 
+    if bundle is not None:
+        to, interface = to or language_of_bundle(bundle), interface or "material"
     key = _language(to, output)
     if output is not None:
         require_writable_file(output)
@@ -94,6 +105,7 @@ def export(
         "cosines": cosines or None,
         "prefix": prefix,
         "namespace": namespace,
+        "bundle": bundle,
     }
     if key == _JSON:
         for option, given in for_code.items():
@@ -111,6 +123,7 @@ def export(
             cosines=cosines,
             prefix=prefix or "",
             namespace=namespace,
+            bundle=bundle,
         )
         entries = [resolve(each) for each in tables]
         text = source_file(entries, key, precision, name, constants or "inline", options)
