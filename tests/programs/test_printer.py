@@ -73,7 +73,7 @@ GOLDEN = """\
 
 // An example.
 // alpha in [0, 1], thetaF in [0, 1].
-float Example(float alpha, float thetaF)
+static inline float Example(float alpha, float thetaF)
 {
     const float beta = 1.0f - alpha;
     const float beta2 = beta * beta;
@@ -137,12 +137,12 @@ def test_only_needed_parentheses_are_printed(expected):
 
 SIGNATURES = {
     "c": (
-        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float c[6])",
-        "float FuzzPs(const float c[6], float NdotU, float TdotU)",
+        "static inline void CalcFuzzPsCoeffs(float alpha, float thetaF, float c[6])",
+        "static inline float FuzzPs(const float c[6], float NdotU, float TdotU)",
     ),
     "cpp": (
-        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
-        "float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
+        "inline void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "inline float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
     ),
     "hlsl": (
         "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
@@ -152,13 +152,17 @@ SIGNATURES = {
         "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
         "float FuzzPs(in float c[6], float NdotU, float TdotU)",
     ),
+    "glsl-es": (
+        "void CalcFuzzPsCoeffs(highp float alpha, highp float thetaF, out highp float c[6])",
+        "highp float FuzzPs(in highp float c[6], highp float NdotU, highp float TdotU)",
+    ),
     "slang": (
         "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
         "float FuzzPs(in float c[6], float NdotU, float TdotU)",
     ),
     "metal": (
-        "void CalcFuzzPsCoeffs(float alpha, float thetaF, thread float (&c)[6])",
-        "float FuzzPs(thread const float (&c)[6], float NdotU, float TdotU)",
+        "inline void CalcFuzzPsCoeffs(float alpha, float thetaF, thread float (&c)[6])",
+        "inline float FuzzPs(thread const float (&c)[6], float NdotU, float TdotU)",
     ),
     "wgsl": (
         "fn CalcFuzzPsCoeffs(alpha: f32, thetaF: f32, c: ptr<function, array<f32, 6>>)",
@@ -169,8 +173,8 @@ SIGNATURES = {
         "float FuzzPs(float c[6], float NdotU, float TdotU)",
     ),
     "cuda": (
-        "__host__ __device__ void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
-        "__host__ __device__ float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
+        "__host__ __device__ inline void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "__host__ __device__ inline float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
     ),
     "python": ("def CalcFuzzPsCoeffs(alpha, thetaF):", "def FuzzPs(c, NdotU, TdotU):"),
     "javascript": (
