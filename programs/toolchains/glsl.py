@@ -62,6 +62,7 @@ def compute_shader_es(source: str, function: Function) -> str:
     """Write the compute shader in GLSL ES 3.10 around a function; a #version line is replaced."""
     text = re.sub(r"^[ \t]*#version\b[^\n]*", "", source, count=1, flags=re.MULTILINE)
     return f"""#version 310 es
+precision highp float;
 #line 1
 {text}
 {_main(function, "float", "float")}"""

@@ -173,7 +173,8 @@ SIGNATURES = {
         "float FuzzPs(float c[6], float NdotU, float TdotU)",
     ),
     "cuda": (
-        "__host__ __device__ inline void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "__host__ __device__ inline "
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
         "__host__ __device__ inline float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
     ),
     "python": ("def CalcFuzzPsCoeffs(alpha, thetaF):", "def FuzzPs(c, NdotU, TdotU):"),

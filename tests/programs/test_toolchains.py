@@ -168,7 +168,7 @@ def reference(function, points, kind):
 # Blender's, may fuse a product and a sum. That changes these sums, of at most six terms below 1,
 # by a few units in the last place.
 FUSED = 6.0
-FUSING = ("glsl", "hlsl", "slang", "wgsl", "osl")
+FUSING = ("glsl", "glsl-es", "hlsl", "slang", "wgsl", "osl")
 
 
 def sample_points(function, precision, rows=2000):
