@@ -1,47 +1,38 @@
-"""The exported functions of an entry: their values, verification, costs, and source files."""
+"""The exported functions of an entry: their values, verification, and source files."""
 
 import functools
+import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from coefficients.catalogue import EXACT, Entry, resolve
-from coefficients.proof_text import proofs
-from fitting import judge
+from coefficients.bundles import bundle
+from coefficients.catalogue import Entry
+from coefficients.code_header import header_of
+from coefficients.code_options import DEFAULTS, CodeOptions, prefixed, require_use, shaped, words_of
 from fitting.points.grids import sobol_points
 from fitting.points.scattered import data_points
 from programs import (
-    KINDS,
-    PRECISIONS,
     CallSequence,
-    Cost,
-    Difference,
-    Function,
     Program,
-    ToolchainError,
     Trial,
     count_operations,
     evaluate,
     language,
     precision_of,
-    toolchain,
     trace,
     write_source,
 )
-from programs.toolchains.verification import corners, run_code, text_of
+from programs.printing.printer import Section, write_sections
+from programs.toolchains.verification import corners
 from quantities.loader import option_for
 
 # Code is run at 2^EXPONENT points and at the corners of the domain.
 EXPONENT = 17
 SEED = 20200718
-# Half precision is called good enough if errors are at most this many times those of the fit in
-# float64.
-WORTH = 2.0
-# The closed form has no such errors. In half precision its error may be this large: it may lose two
-# of the eleven bits.
-HALF_ALLOWANCE = 4 * float(np.finfo(np.float16).eps)
+LICENCE_LABEL, LICENCE = "SPDX-License-Identifier", "Apache-2.0"
 
 
 def trial_of(entry: Entry, precision: str, exponent: int = EXPONENT) -> Trial:
@@ -87,153 +78,73 @@ def operations_of(entry: Entry) -> int:
     return count_operations(trace(entry.functions()[-1])).operations
 
 
-def costs(functions: Sequence[Function]) -> dict[str, Cost]:
-    """Count the operations of each function, by its name."""
-    return {each.name: count_operations(trace(each)) for each in functions}
-
-
-def cost_text(cost: Cost) -> str:
-    """Write an operation count as text: '63 operations (23 add, 30 mul, …)'."""
-    kinds = [f"{getattr(cost, kind)} {kind}" for kind in KINDS if getattr(cost, kind)]
-    fused = f"; {cost.fma} fma possible" if cost.fma else ""
-    return f"{cost.operations} operations ({', '.join(kinds)}{fused})"
-
-
 def source_file(
-    entry: Entry,
+    entries: Entry | Sequence[Entry],
     key: str,
     precision: str | None = None,
     function_name: str | None = None,
     constants: str = "inline",
+    options: CodeOptions = DEFAULTS,
     made_by: str | None = None,
 ) -> str:
-    """Return the source file of an entry; its header states domain, errors, proofs and cost.
+    """Return the source file of entries; its header states domain, errors, proofs and cost.
 
-    Arguments: `key`, a key of LANGUAGES; `precision`, None for float (JavaScript: double);
-    `function_name`, None for the quantity's own; `constants`, "inline" or "table"; `made_by`, a
-    text for the header in place of the command line. On one machine, the same call returns the
+    Arguments: `entries`, one, or several whose functions have different names; `key`, the name of a
+    language; `precision`, None for float (JavaScript: double); `function_name`, None for the
+    quantity's own, and only for one entry; `constants`, "inline" or "table"; `options`; `made_by`,
+    a text for the header in place of the command line. On one machine, the same call returns the
     same bytes. Raises ValueError for what cannot be written.
     """
-    kind = precision_of(key, precision)
-    functions = entry.functions(kind, function_name)
+    listed = [entries] if isinstance(entries, Entry) else list(entries)
+    hosted = None if options.bundle is None else bundle(options.bundle)
+    if function_name is not None and len(listed) > 1:
+        raise ValueError(f"name {function_name!r} is for one table; allowed for more: prefix")
+    spelled = language(key)
+    kind = precision_of(spelled.key, precision)
+    require_use(options, [entry.problem for entry in listed])
+    chosen = [shaped(entry, options) for entry in listed]
+    called = [prefixed(each.functions(kind, function_name), options.prefix) for each in chosen]
+    if hosted is not None and (spelled.key, kind) != (hosted.language, "float"):
+        raise ValueError(
+            f"bundle {options.bundle!r} is not for {spelled.name} in {kind}: allowed is "
+            f"{hosted.language} in float"
+        )
+    guard = _guard(listed, precision, function_name, options.prefix)
+
+    def written(headers: Sequence[Mapping[str, str]]) -> str:
+        return write_sections(
+            [Section(*pair) for pair in zip(called, headers, strict=True)],
+            spelled,
+            kind,
+            constants=constants,
+            guard=guard,
+            namespace=options.namespace,
+            ending=[] if hosted is None else hosted.code(called),
+        )
+
     # The source is first written without its header: if that is not possible, no time is spent on
     # measurements.
-    bare = write_source(functions, key, kind, constants=constants)
-    command = ["shadefit", "export", *option_for(entry.problem), entry.name, "--to", key]
-    if precision is not None:
-        command += ["--precision", precision]
-    if function_name is not None:
-        command += ["--name", function_name]
-    if constants != "inline":
-        command += ["--constants", constants]
-    trial = trial_of(entry, kind)
-    trial = replace(trial, calls=replace(trial.calls, functions=functions))
-    head = _header(entry, trial, key, bare, made_by or shlex.join(command))
-    return write_source(functions, key, kind, constants=constants, header=head)
+    written([{}] * len(listed))
+    command = ["shadefit", "export", *option_for(listed[0].problem)]
+    command += [*(entry.name for entry in listed), "--to", spelled.key]
+    given = {"--precision": precision, "--name": function_name}
+    given |= {"--constants": None if constants == "inline" else constants}
+    command += [word for flag, value in given.items() if value for word in (flag, value)]
+    command += words_of(options)
+    headers = []
+    for entry, functions in zip(chosen, called, strict=True):
+        trial = trial_of(entry, kind)
+        trial = replace(trial, calls=replace(trial.calls, functions=functions))
+        bare = write_source(functions, spelled, kind, constants=constants)
+        headers.append(header_of(entry, trial, spelled.key, bare, made_by or shlex.join(command)))
+    headers[0] = {LICENCE_LABEL: LICENCE, **headers[0]}
+    return written(headers)
 
 
-def _header(entry: Entry, trial: Trial, key: str, source: str, command: str) -> dict[str, str]:
-    functions, precision = trial.calls.functions, trial.precision
-    reference = entry.problem.reference
-    equation = entry.equation
-    against = reference.compared_with
-    meant = f": {reference.symbol} = {reference.definition}" if reference.definition else ""
-    head = {
-        "Quantity": f"{entry.problem.description}{meant}",
-        "Equation": f"{equation} of table {entry.name}" if entry.fitted else equation,
-        "Domain": f"{_domain(functions)}; all others without unit",
-    }
-    if entry.remark:
-        head["Arguments"] = entry.remark
-    own = None
-    if entry.fitted is None:
-        # This is the same program with the same number of steps, but evaluated in float64.
-        left = trial.against_integral(replace(trial, precision="double").form)
-        head["Error in exact arithmetic"] = f"{entry.exact_code.left}: {text_of(left)} (in float64)"
-    else:
-        known = proofs(entry)
-        if known:
-            head["Proven in exact arithmetic"] = "; ".join(known)
-        own, head["Error in exact arithmetic"] = _own_errors(entry)
-    if trial.exact is not None:
-        measured, how = _measured(trial, key, source)
-        where = "" if reference.data else ", corners of the domain included"
-        head[f"Error in {precision}"] = (
-            f"{text_of(measured)} against {against} ({len(trial.integral)} fixed points{where}; "
-            f"{how})"
-        )
-        if precision == "half":
-            head["Half precision"] = _verdict(trial, own, measured)
-    head["Cost"] = "; ".join(f"{n}: {cost_text(cost)}" for n, cost in costs(functions).items())
-    beside = closed_form_beside(entry)
-    if beside is not None:
-        (exact,) = costs(beside.functions(precision)).values()
-        head["Cost of the closed form"] = f"{cost_text(exact)} ({beside.name})"
-    head["Made by"] = command
-    return head
-
-
-def _own_errors(entry: Entry) -> tuple[Difference, str]:
-    """Return the errors of a fitted form in float64, and a text for the header."""
-    reference, fitted = entry.problem.reference, entry.require_fitted()
-    if not (reference.legs or reference.data):
-        stated = entry.require_table().errors
-        if stated is None:
-            return Difference(np.nan, np.nan), "not stated, and not measured: exact values unknown"
-        own = Difference(stated.off_grid.max, stated.off_grid.rms)
-        return own, f"{text_of(own)}, as the table states; not measured again"
-    errors = judge(fitted)
-    own = Difference(errors.largest, errors.rms)
-    if reference.data is not None:
-        which = "that no fit used" if reference.data.held_out.any() else "which were fitted too"
-        rows = f"{errors.points} rows of {reference.data.source}, {which}"
-        return own, f"{text_of(own)} against {reference.compared_with} ({rows})"
-    uphill = ", and uphill from the worst" if reference.sampling.climbs else ""
-    return own, (
-        f"{text_of(own)} against {reference.compared_with} (rms over {errors.points} points off "
-        f"the fitting grid; largest sought on more, of the boundary and where it is steep{uphill})"
-    )
-
-
-def closed_form_beside(entry: Entry) -> Entry | None:
-    """Return the closed form whose cost is stated beside that of a table; None if there is none.
-
-    There is one only for a form of two stages whose quantity has an exported closed form.
-    """
-    if entry.fitted is None or entry.fitted.form.inputs is None:
-        return None
-    return resolve(f"{EXACT}/{entry.problem.name}") if entry.problem.exact_code else None
-
-
-def _domain(functions: Sequence[Function]) -> str:
-    """Write the domains of the functions' scalar arguments as text."""
-    parameters = {p.name: p for each in functions for p in each.parameters if p.size is None}
-    return ", ".join(
-        f"{p.name} in [{p.domain[0]:.6g}, {p.domain[1]:.6g}]{'' if p.unit == '1' else ' ' + p.unit}"
-        for p in parameters.values()
-    )
-
-
-def _measured(trial: Trial, key: str, source: str) -> tuple[Difference, str]:
-    name = language(key).name
-    reason = f"{name} was not run"
-    if toolchain(key).missing(trial.precision) is None:
-        try:
-            values = run_code(trial, key, source)
-            return trial.against_integral(values), f"this code run in {name}"
-        except ToolchainError as error:
-            reason = error.summary
-    values = trial.emulated(PRECISIONS[trial.precision])
-    return trial.against_integral(values), f"emulated, every operation rounded: {reason}"
-
-
-def _verdict(trial: Trial, own: Difference | None, measured: Difference) -> str:
-    if own is None:
-        good = measured.largest <= HALF_ALLOWANCE and not measured.not_finite
-        bound = f"largest error {HALF_ALLOWANCE:.1e}"
-    else:
-        # The fit's error is measured at the same points, so that only the precision differs.
-        own = trial.against_integral(trial.form)
-        good = measured.within(replace(own, largest=WORTH * own.largest, rms=WORTH * own.rms))
-        bound = f"{WORTH:g} times the fit's own {text_of(own)} on the same points"
-    return f"{'good enough' if good else 'NOT GOOD ENOUGH'} (bound: {bound})"
+def _guard(
+    entries: Sequence[Entry], precision: str | None, function_name: str | None, prefix: str
+) -> str:
+    """Return the name of an include guard, different for files of different functions."""
+    names = [entry.name for entry in entries]
+    parts = ["shadefit", prefix, *names, function_name or "", precision or ""]
+    return re.sub(r"[^A-Z0-9]+", "_", "_".join(parts).upper()).strip("_")

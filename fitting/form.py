@@ -23,11 +23,15 @@ class Stage:
 
     The first stage is called with the coefficients and the values of its axes. A second stage is
     called with the results of the first, and with its own arguments, which `Form.inputs` computes.
-    `summary` is a line for the comments of exported code that describes the stage.
+    `summary` is a line for the comments of exported code that describes the stage. In that code the
+    array of a first stage's results is called `result_name`, and the clamped arguments of a second
+    stage have the names `arguments`; None leaves the choice to the printer.
     """
 
     call: Callable[..., Any]
     summary: str = ""
+    result_name: str = "c"
+    arguments: tuple[str, ...] | None = None
 
 
 def unguarded(*_) -> Array:
@@ -76,6 +80,8 @@ class Form:
     * `starts`: coefficients that a fit may start from. None of them is from a published table.
     * `shape`: the arguments that make this form in its family; None for a form of no family.
     * `solver`: fits the form on a grid (`fitting/solvers`); None stands for the general `OnGrid`.
+    * `notation`: a text for the header of exported code, which says what names in the equation
+      mean.
     * `has_least_error`: whether to look for a lower bound of the largest error. There is one only
       for a form that is a quotient of linear functions of its coefficients.
     """
@@ -93,6 +99,7 @@ class Form:
     proofs: Proofs = field(default_factory=Proofs)
     solver: Any = None
     has_least_error: bool = True
+    notation: str = ""
 
     @property
     def coefficient_shape(self) -> tuple[int, ...]:

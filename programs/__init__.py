@@ -26,6 +26,7 @@ from programs.cost import Cost as Cost
 from programs.cost import count_operations as count_operations
 from programs.functions import Function as Function
 from programs.functions import Parameter as Parameter
+from programs.functions import Record as Record
 from programs.functions import function as function
 from programs.functions import group_inputs as group_inputs
 from programs.functions import input_names as input_names
@@ -45,13 +46,13 @@ from programs.program import subprogram as subprogram
 
 if TYPE_CHECKING:
     from programs.printing.printer import write_source as write_source
+    from programs.toolchains.difference import Difference as Difference
     from programs.toolchains.process import ToolchainError as ToolchainError
     from programs.toolchains.registry import toolchain as toolchain
     from programs.toolchains.throughput import Throughput as Throughput
     from programs.toolchains.throughput import measure_throughput as measure_throughput
     from programs.toolchains.verification import CallSequence as CallSequence
     from programs.toolchains.verification import Check as Check
-    from programs.toolchains.verification import Difference as Difference
     from programs.toolchains.verification import Trial as Trial
     from programs.toolchains.verification import check as check
     from programs.tracing.tracer import trace as trace
@@ -64,7 +65,7 @@ _MODULES = {
     "measure_throughput": "programs.toolchains.throughput",
     "CallSequence": "programs.toolchains.verification",
     "Check": "programs.toolchains.verification",
-    "Difference": "programs.toolchains.verification",
+    "Difference": "programs.toolchains.difference",
     "Trial": "programs.toolchains.verification",
     "check": "programs.toolchains.verification",
     "trace": "programs.tracing.tracer",

@@ -3,7 +3,36 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any
+from typing import Any, Literal
+
+Layout = Literal["array", "struct", "vec4"]
+
+
+@dataclass(frozen=True)
+class Record:
+    """A structure in exported code that holds the results of one function for another function.
+
+    `name` is that of the type. `layout` says what it contains: one array `member[…]`; a number for
+    each result, `member0`, `member1`, …; or vectors of four numbers, which have these names. The
+    last is what constant buffers hold without padding. Languages without types of variables have a
+    tuple or an array instead. Raises ValueError for a name that is not an identifier.
+    """
+
+    name: str
+    layout: Layout = "array"
+    member: str = "m"
+
+    def __post_init__(self):
+        _require_identifier("record", self.name)
+        _require_identifier("member", self.member)
+
+    def place(self, index: int) -> str:
+        """Return the member that holds result number `index`."""
+        if self.layout == "array":
+            return f"{self.member}[{index}]"
+        if self.layout == "struct":
+            return f"{self.member}{index}"
+        return f"{self.member}{index // 4}.{'xyzw'[index % 4]}"
 
 
 @dataclass(frozen=True)
@@ -12,14 +41,16 @@ class Parameter:
 
     `name` is the identifier that appears in the shader. `domain` is the closed interval (low, high)
     that the function is made for, in `unit`; for an array it holds for each element. `size` is None
-    for a scalar and n for an array of n numbers. Raises ValueError for a name that is not an
-    identifier, for an empty or infinite domain, and for a size below one.
+    for a scalar and n for an array of n numbers. If the array is the content of a structure, that
+    is `record`. Raises ValueError for a name that is not an identifier, for an empty or infinite
+    domain, and for a size below one.
     """
 
     name: str
     domain: tuple[float, float]
     unit: str = "1"
     size: int | None = None
+    record: Record | None = None
 
     def __post_init__(self):
         _require_identifier("parameter", self.name)
@@ -39,8 +70,9 @@ class Function:
     `call` takes its arguments in the order of `parameters`: a scalar for each scalar parameter, a
     tuple of scalars for each array. If `result` is None, it returns one scalar. Otherwise it
     returns a tuple of `result` scalars, and printed code stores them in an array that is called
-    `result_name`. `summary` is one line for the comment above the code. Raises ValueError for names
-    that are not identifiers or that occur twice, and for a `result` below one.
+    `result_name`, or returns them in a structure `record`. `summary` is one line for the comment
+    above the code. Raises ValueError for names that are not identifiers or that occur twice, and
+    for a `result` below one.
     """
 
     name: str
@@ -49,6 +81,7 @@ class Function:
     result: int | None
     result_name: str
     call: Callable[..., Any]
+    record: Record | None = None
 
     def __post_init__(self):
         _require_identifier("function", self.name)
@@ -69,15 +102,18 @@ def function(
     summary: str = "",
     result: int | None = None,
     result_name: str = "result",
+    record: Record | None = None,
 ) -> Function:
     """Wrap any JAX function of scalars in a `Function`, with defaults for what is rarely needed.
 
     Arguments: `name` and `parameters`, as they appear in the shader; `call`, the JAX function;
     `summary`, one line for the comment above the code; `result`, None for a scalar result, else the
-    number of results, which are stored in an array that is called `result_name`. Returns the
-    function. Raises ValueError for names that are not identifiers or that occur twice.
+    number of results, which are stored in an array that is called `result_name`, or returned in a
+    `record`. Returns the function. Raises ValueError for names that are not identifiers or that
+    occur twice.
     """
-    return Function(name, summary or f"{name}.", tuple(parameters), result, result_name, call)
+    text = summary or f"{name}."
+    return Function(name, text, tuple(parameters), result, result_name, call, record)
 
 
 def input_names(function: Function) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ and clamps of the arguments. The coefficients become constants, which the printe
 code.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -14,10 +15,12 @@ import jax.numpy as jnp
 import numpy as np
 from jax.ad_checkpoint import checkpoint_name
 
-from fitting.form import FittedForm
+from fitting.form import FittedForm, Form
 from integrals.reference import Axis
-from programs.functions import Function, Parameter, function
+from programs.functions import Function, Parameter, Record, function
 
+# The argument of a second function that holds the results of the first.
+MATERIAL = "material"
 # The range of a first stage's results is found on a grid of this many nodes an axis.
 _SAMPLED = 33
 
@@ -31,6 +34,10 @@ class Argument:
     * `axis`: the name of the form's axis that the argument stands for.
     * `name`: the name of the argument in the shader.
     * `clamp`: the ends of the form's domain at which the value is clamped.
+    * `least`: the number that a value is clamped to from below, if that is not the lower end of the
+      domain. The code may be called with values between the two, but nothing is stated for them.
+    * `cosine`: for an angle, the name of the argument that holds its cosine, if the code takes
+      cosines.
     * `local`: the name of the variable in the code that holds the clamped value; None leaves the
       choice to the printer.
     """
@@ -39,6 +46,8 @@ class Argument:
     name: str
     clamp: Literal["both", "above", "none"] = "none"
     local: str | None = None
+    least: float | None = None
+    cosine: str | None = None
 
 
 @dataclass(frozen=True)
@@ -49,9 +58,17 @@ class CallingConvention:
     first, Calc…Coeffs, returns results that are arguments of the second, which returns the value.
 
     * `name`: the name of the function that returns the value.
-    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for the form.
+    * `summary`, `remark`: texts for comments. '{equation}' in the summary stands for ' (Eq. 3)', or
+      nothing.
     * `arguments`: the arguments of the only function, or of the first of two.
-    * `second`: the names and domains of the second function's arguments after those results.
+    * `second`: the names and domains of the second function's arguments after those results. They
+      are clamped to their domains.
+    * `codomain`: the interval that values are clamped to. None: they are not clamped, because no
+      arguments, rounding included, lead out of the codomain.
+    * `material`: the name of a structure that can stand for the results of the first function.
+    * `cosines`: whether arguments that are angles are replaced by their cosines.
+    * `record`: the structure that the first of two functions, …Material, returns and the second
+      takes, if the code has that interface. None: it has the interface of the paper's listings.
     * `columns`: maps points (n, axes) of the form to these arguments (n, …), in NumPy.
     """
 
@@ -61,6 +78,10 @@ class CallingConvention:
     remark: str | None = None
     second: tuple[tuple[str, tuple[float, float]], ...] = ()
     columns: Callable[[Points], Points] | None = None
+    codomain: tuple[float, float] | None = None
+    material: str | None = None
+    cosines: bool = False
+    record: Record | None = None
 
     def functions(self, fitted: FittedForm) -> tuple[Function, ...]:
         """Return the functions that a fitted form is exported as, in the order of the calls."""
@@ -75,16 +96,24 @@ class CallingConvention:
         """
         order = [self._place(fitted, argument) for argument in self.arguments]
         first = points[:, order]
+        first = self.with_cosines(first)
         if fitted.form.inputs is None:
             return (first,)
         assert self.columns is not None
         return first, self.columns(points)
 
+    def with_cosines(self, columns: Points) -> Points:
+        """Replace angles among the arguments (n, …) by their cosines, if the code takes these."""
+        if not self.cosines:
+            return columns
+        angles = [argument.cosine is not None for argument in self.arguments]
+        return np.where(angles, np.cos(columns), columns)
+
     def _only(self, fitted: FittedForm) -> Function:
         form, constants = fitted.form, fitted.constants
 
         def value(*given):
-            return form(jnp.asarray(constants), *self._point(fitted, given))
+            return self._limited(form(jnp.asarray(constants), *self._point(fitted, given)))
 
         summary = self.summary.format(equation=_equation(fitted))
         return function(self.name, self._parameters(fitted), value, summary)
@@ -97,20 +126,46 @@ class CallingConvention:
             return tuple(form.first(jnp.asarray(constants), *self._clamped(fitted, given)))
 
         summary = form.stages[0].summary.format(name=self.name)
-        name, parameters = f"Calc{self.name}Coeffs", self._parameters(fitted)
-        return function(name, parameters, results, summary, count, "c")
+        name, result_name, record = f"Calc{self.name}Coeffs", form.stages[0].result_name, None
+        if self.record is not None:
+            name, result_name = f"{self.name}Material", MATERIAL
+            record = self._record(form)
+        return function(
+            name, self._parameters(fitted), results, summary, count, result_name, record
+        )
 
     def _second(self, fitted: FittedForm) -> Function:
-        call, largest = fitted.form.stages[1].call, _largest_result(fitted)
+        stage, largest = fitted.form.stages[1], _largest_result(fitted)
+        call = stage.call
 
-        def value(c, *inputs):
-            return call(c, *inputs)
+        def value(results, *inputs):
+            return self._limited(call(results, *self._directed(inputs, stage.arguments)))
 
+        name = fitted.form.stages[0].result_name if self.record is None else MATERIAL
+        record, size = self._record(fitted.form), _result_count(fitted)
         parameters = (
-            Parameter("c", (-largest, largest), size=_result_count(fitted)),
+            Parameter(name, (-largest, largest), size=size, record=record),
             *(Parameter(name, domain) for name, domain in self.second),
         )
         return function(self.name, parameters, value, fitted.form.stages[1].summary)
+
+    def _record(self, form: Form) -> Record | None:
+        """Return the structure, whose members are called as the results are in the equation."""
+        if self.record is None:
+            return None
+        return replace(self.record, member=form.stages[0].result_name)
+
+    def _directed(self, inputs: tuple[Any, ...], names: tuple[str, ...] | None) -> list[Any]:
+        """Clamp the second function's own arguments to their domains, under the names of a form."""
+        called = names or [name for name, _ in self.second]
+        return [
+            _called(clamped(value, *ends), name)
+            for value, (_, ends), name in zip(inputs, self.second, called, strict=True)
+        ]
+
+    def _limited(self, result: Any) -> Any:
+        """Clamp a result to the codomain, if the convention has one."""
+        return result if self.codomain is None else clamped(result, *self.codomain)
 
     def _place(self, fitted: FittedForm, argument: Argument) -> int:
         return [axis.name for axis in fitted.axes].index(argument.axis)
@@ -121,7 +176,9 @@ class CallingConvention:
     def _parameters(self, fitted: FittedForm) -> tuple[Parameter, ...]:
         pairs = zip(self.arguments, self._axes(fitted), strict=True)
         return tuple(
-            Parameter(argument.name, (float(axis.lower), float(axis.upper)), axis.unit)
+            Parameter(argument.cosine, _cosines(axis))
+            if self.cosines and argument.cosine is not None
+            else Parameter(argument.name, (float(axis.lower), float(axis.upper)), axis.unit)
             for argument, axis in pairs
         )
 
@@ -141,20 +198,35 @@ class CallingConvention:
         values = list(given)
         for k in reversed(range(len(values))):
             # The value is not assigned to a variable: its name would appear in the exported code.
-            values[k] = _inside(values[k], self.arguments[k], self._axes(fitted)[k])
+            values[k] = _inside(values[k], self.arguments[k], self._axes(fitted)[k], self.cosines)
         return values
 
 
-def _inside(value: Any, argument: Argument, axis: Axis) -> Any:
+def _inside(value: Any, argument: Argument, axis: Axis, cosines: bool) -> Any:
     """Clamp one argument. If the convention has a name for the result, the code uses it."""
+    if cosines and argument.cosine is not None:
+        return jnp.arccos(_called(clamped(value, *_cosines(axis)), argument.cosine))
     if argument.clamp == "none":
         return value
     if argument.clamp == "both":
-        return _called(_clamped(value, float(axis.lower), float(axis.upper)), argument.local)
+        lower = float(axis.lower) if argument.least is None else argument.least
+        return _called(clamped(value, lower, float(axis.upper)), argument.local)
     return _called(jnp.minimum(value, float(axis.upper)), argument.local)
 
 
-def _clamped(value: Any, lower: float, upper: float) -> Any:
+def _cosines(axis: Axis) -> tuple[float, float]:
+    """Return the domain of the cosine of an angle in [0, π]."""
+    # cos(π/2) is 0 but for the rounding of π.
+    least, largest = (round(float(np.cos(end)), 15) for end in (axis.upper, axis.lower))
+    return least, largest
+
+
+def clamped(value: Any, lower: float, upper: float) -> Any:
+    """Clamp a traced value to [lower, upper].
+
+    Where minima and maxima are comparisons, or return the number if the other argument is NaN, as
+    in C and HLSL, NaN becomes one of the ends.
+    """
     return jnp.maximum(jnp.minimum(value, upper), lower)
 
 
@@ -166,21 +238,20 @@ def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
     """Rename the last function, which returns the value, to `name`, and a first one accordingly."""
     *before, last = functions
     changed = [
-        replace(each, name=f"Calc{name}Coeffs", summary=each.summary.replace(last.name, name))
+        replace(
+            each,
+            name=f"{name}Material" if each.record is not None else f"Calc{name}Coeffs",
+            summary=each.summary.replace(last.name, name),
+        )
         for each in before
     ]
     return (*changed, replace(last, name=name))
 
 
 def _equation(fitted: FittedForm) -> str:
-    """Return a form's equation, such as 'Eq. 3', or for a form of a family the family's name."""
-    form = fitted.form
-    if form.shape is not None:
-        return form.name
-    equation = form.equation
-    if equation.startswith("Eq. (") and equation.endswith(")"):
-        return equation.replace("Eq. (", "Eq. ").rstrip(")")
-    return equation
+    """Return the number of a form's equation in the supplement, ' (Eq. 3)', or nothing."""
+    found = re.fullmatch(r"Eq\. \((\d+)\)", fitted.form.equation)
+    return "" if found is None else f" (Eq. {found[1]})"
 
 
 def _result_count(fitted: FittedForm) -> int:

@@ -12,7 +12,7 @@ from fitting.form import FittedForm, Form
 from fitting.points.scattered import scattered_points
 from fitting.proofs.largest_error import ErrorCode, difference_code
 from integrals.reference import Axis, Reference
-from programs.functions import Function
+from programs.functions import Function, Record
 from quantities.calling_convention import CallingConvention
 from quantities.family import Family
 
@@ -29,6 +29,9 @@ class ExactCode:
       the calls.
     * `arguments_at`: maps points (n, axes) to the arguments (n, …) of each function.
     * `equation`, `remark`: texts for the header of the code.
+    * `staged`: the same code as the two functions of a form of two stages. It maps a precision, the
+      structure between them, and whether cosines stand for angles, to the functions. None: the
+      quantity has no such forms.
     * `left`: a text for the header, which says what error remains in exact arithmetic.
     """
 
@@ -38,6 +41,7 @@ class ExactCode:
     arguments_at: Callable[[np.ndarray], tuple[np.ndarray, ...]]
     remark: str | None = None
     left: str = "none but the rounding of float64"
+    staged: Callable[[str, Record, bool], tuple[Function, ...]] | None = None
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """Polynomials of two variables that have only some of the monomials zⁱyʲ, by Horner's rule."""
 
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,14 +14,18 @@ def horner(coefficients: Mapping[tuple[int, int], Any], z: Any, y: Any) -> Any:
     Horner's rule is applied to z. Each power of z has a polynomial in y as its coefficient, to
     which the rule is applied too.
     """
-    total = None
-    for i in range(max(i for i, _ in coefficients), -1, -1):
-        row = {j: c for (k, j), c in coefficients.items() if k == i}
-        inner = None
-        for j in range(max(row, default=-1), -1, -1):
-            inner = _plus(None if inner is None else y * inner, row.get(j))
-        total = _plus(None if total is None else z * total, inner)
-    return total
+    rows = range(max(i for i, _ in coefficients) + 1)
+    columns = range(max(j for _, j in coefficients) + 1)
+    return _horner([_horner([coefficients.get((i, j)) for j in columns], y) for i in rows], z)
+
+
+def _horner(terms: list, x: Any) -> Any:
+    """Return the sum of terms times x⁰, x¹, …; a term of None is absent, and so may be the sum."""
+    return functools.reduce(
+        lambda higher, term: _plus(None if higher is None else x * higher, term),
+        reversed(terms),
+        None,
+    )
 
 
 def _plus(one, other):

@@ -7,7 +7,9 @@ and runs its code (programs/toolchains).
 
 from programs.languages.registry import LANGUAGES as LANGUAGES
 from programs.languages.registry import language as language
+from programs.languages.registry import language_of_file as language_of_file
 from programs.languages.registry import precision_of as precision_of
+from programs.languages.registry import require_suffix as require_suffix
 from programs.languages.spelling import Language as Language
 from programs.languages.spelling import Precedence as Precedence
 from programs.languages.spelling import Spelling as Spelling

@@ -28,6 +28,8 @@ LANGUAGE = Language(
         "output filter superp hvec2 hvec3 hvec4 fvec2 fvec3 fvec4 template namespace using cast",
         "varying float16_t float32_t float64_t",
     ),
+    clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "clamp({0}, {1}, {2})")),
+    vectors={"half": "f16vec4", "float": "vec4", "double": "dvec4"},
     prologue={
         "half": ("#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require",),
         "float": (),

@@ -30,6 +30,8 @@ LANGUAGE = Language(
         "throws transient true try typeof undefined var void volatile while with yield Math NaN",
         "Infinity",
     ),
+    record_opening=None,
+    preprocessor=False,
     prologue={"double": ()},
     scalar_argument="{name}",
     array_argument="{name}",

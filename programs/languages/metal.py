@@ -24,6 +24,13 @@ LANGUAGE = Language(
         "half half2 half3 half4 float2 float3 float4 uint uchar ushort ulong sampler texture2d",
         "array vec access ray_data object_data",
     ),
+    clamps=dict.fromkeys(
+        ("half", "float"), ("metal::clamp({0}, {1}, {2})", "metal::saturate({0})")
+    ),
+    scalar_head="inline {type} {function}({arguments})",
+    array_head="inline void {function}({arguments})",
+    vectors={"half": "half4", "float": "float4"},
+    namespaces=True,
     prologue={precision: ("#include <metal_stdlib>",) for precision in ("half", "float")},
     array_argument="thread const {type} (&{name})[{size}]",
     array_result="thread {type} (&{name})[{size}]",

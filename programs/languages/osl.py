@@ -22,6 +22,7 @@ LANGUAGE = Language(
         "sizeof static switch template this throw true try typedef uniform union unsigned varying",
         "virtual P I N Ng u v dPdu dPdv Ps time dtime dPdtime Ci",
     ),
+    clamps=dict.fromkeys(("float",), ("clamp({0}, {1}, {2})", "clamp({0}, {1}, {2})")),
     prologue={"float": ()},
     boolean="int",
     array_result="output {type} {name}[{size}]",

@@ -1,7 +1,7 @@
 """What a language is: everything that the printer needs to know to write its code."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -81,6 +81,22 @@ class Language:
     store_statement: str = "{name}[{index}] = {value};"
     # returns several results together: {values}; None: they are stored one by one
     return_all: str | None = None
+    # precision -> how max(min(x, {2}), {1}) is written: a template for any two ends, and
+    # one for 0 and 1
+    clamps: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    # precision -> type of a vector of four numbers
+    vectors: Mapping[str, str] = field(default_factory=dict)
+    # around the members of a structure: {name}; None: the language has tuples or arrays instead
+    record_opening: str | None = "struct {name} {{"
+    record_closing: str = "}};"
+    # members of a structure: {type}, {name} and, for arrays, {size}
+    record_number: str = "{type} {name};"
+    record_array: str = "{type} {name}[{size}];"
+    # a structure without a value yet: {type}, {name}
+    record_variable: str = "{type} {name};"
+    # whether code can be in a namespace; whether there is a preprocessor for an include guard
+    namespaces: bool = False
+    preprocessor: bool = True
     # around the array of constants: {type}, {name}, {size}
     table_opening: str = "static const {type} {name}[{size}] = {{"
     table_closing: str = "}};"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from programs.languages import Language, shortest_decimal
 from programs.languages.spelling import Precedence, Spelling
 from programs.printing.line_breaking import Break, Tokens, nested, on_one_line
-from programs.program import Operand, Program, is_value
+from programs.program import Operand, Program, Step, is_value
 
 # Operators that all languages share, unless a language has its own spelling: the sign, its
 # precedence, and the least precedence with which the left and the right operand need no
@@ -109,6 +109,9 @@ def _write(context: WritingContext, operand: Operand) -> tuple[Tokens, int]:
 
 def _compute(context: WritingContext, value: int) -> tuple[Tokens, int]:
     step = context.program.steps[value - len(context.program.inputs)]
+    clamp = _clamp(context, step)
+    if clamp is not None:
+        return clamp, Precedence.ATOM
     how = spelling(context.language, context.precision, step.operation)
     if how is not None:
         return _from_template(context, how, step.operands), how.precedence
@@ -118,6 +121,28 @@ def _compute(context: WritingContext, value: int) -> tuple[Tokens, int]:
             tokens = ["(", *nested(tokens), ")"]
         return [_PREFIX[step.operation], *tokens], Precedence.SIGN
     return _infix(context, step.operation, step.operands)
+
+
+def _clamp(context: WritingContext, step: Step) -> Tokens | None:
+    """Write max(min(x, high), low) by the language's function for it; None if it is no such step.
+
+    For low ≤ high, min(max(x, low), high) is the same.
+    """
+    program, templates = context.program, context.language.clamps.get(context.precision)
+    if templates is None or step.operation not in ("min", "max"):
+        return None
+    inner, bound = step.operands
+    if not is_value(inner) or is_value(bound) or inner in context.names:
+        return None
+    within = program.steps[inner - len(program.inputs)]
+    if within.operation != {"min": "max", "max": "min"}[step.operation]:
+        return None
+    operand, other = within.operands
+    low, high = (bound, other) if step.operation == "max" else (other, bound)
+    if not is_value(operand) or is_value(low) or is_value(high) or not low <= high:
+        return None
+    template = templates[(low, high) == (0.0, 1.0)]
+    return _from_template(context, Spelling(template), (operand, low, high))
 
 
 def _infix(

@@ -43,8 +43,18 @@ def _ascii(character: str) -> str:
 
 def as_identifier(text: str) -> str:
     """Turn text into an ASCII identifier, which may be empty: no leading or double underscores."""
-    word = re.sub(r"\W", "_", ascii_text(text).replace("^", ""))
+    # material.m[3] becomes m3, and c[3] becomes c3.
+    member = re.sub(r"\[(\d+)\]", r"\1", text.partition(".")[2] or text)
+    word = re.sub(r"\W", "_", ascii_text(member).replace("^", ""))
     return re.sub(r"__+", "_", word).strip("_").lstrip("0123456789")
+
+
+def camel_case(name: str) -> str:
+    """Write an identifier in camel case: theta_f becomes thetaF, sin2_ut becomes sin2Ut.
+
+    An underscore before a digit stays, because the digits around it would run together.
+    """
+    return re.sub(r"_+([A-Za-z])", lambda found: found[1].upper(), name)
 
 
 def free_name(wanted: str, taken: Collection[str]) -> str:
@@ -108,7 +118,8 @@ def _product(left: str, right: str) -> str | None:
     (base, power), (other, more) = _power(left), _power(right)
     if base == other:
         return f"{base}{power + more}"
-    return left + right if len(left) == len(right) == 1 else None
+    short = all(re.fullmatch("[A-Za-z][2-9]?", name) for name in (left, right))
+    return left + right if short else None
 
 
 def _power(name: str) -> tuple[str, int]:

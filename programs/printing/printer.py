@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from programs.functions import Function, Parameter, input_names
 from programs.languages import Language
 from programs.languages import language as find_language
 from programs.operations import OPERATIONS
+from programs.printing.comments import function_comment, header_comment
 from programs.printing.expression import (
     ConstantPool,
     WritingContext,
@@ -14,11 +16,23 @@ from programs.printing.expression import (
     literal,
     typed_expression,
 )
-from programs.printing.identifiers import ascii_text, free_name
-from programs.printing.line_breaking import INDENT, Break, Tokens, break_lines, nested, wrap_words
+from programs.printing.identifiers import free_name
+from programs.printing.line_breaking import INDENT, Break, Tokens, break_lines, nested
 from programs.printing.lowering import lowered
+from programs.printing.records import empty_components, record_declarations, record_of
 from programs.printing.statement_choice import choose_statements
 from programs.tracing.tracer import trace
+
+# Stores one of several results in a structure.
+_STORE = "{place} = {value};"
+
+
+@dataclass(frozen=True)
+class Section:
+    """Functions, and the labels and texts of the comment above them, in order."""
+
+    functions: tuple[Function, ...]
+    header: Mapping[str, str]
 
 
 def write_source(
@@ -38,8 +52,30 @@ def write_source(
     language, a precision that it does not have, a name that it does not allow, an operation that it
     cannot express, a constant out of range, and a program that is too long for it.
     """
+    chosen = (functions,) if isinstance(functions, Function) else tuple(functions)
+    section = Section(chosen, header or {})
+    return write_sections([section], language, precision, constants=constants)
+
+
+def write_sections(
+    sections: Sequence[Section],
+    language: str | Language,
+    precision: str = "float",
+    *,
+    constants: str = "inline",
+    guard: str | None = None,
+    namespace: str | None = None,
+    ending: Sequence[list[str]] = (),
+) -> str:
+    """Write groups of functions as one source file, each group under a header of its own.
+
+    Arguments: `sections`; `guard`, the name of an include guard, which a language without a
+    preprocessor ignores; `namespace`, that of all functions; `ending`, blocks of lines
+    after the functions; the rest as in `write_source`. Returns
+    the source. Raises ValueError as `write_source` does, and for a namespace in a language without.
+    """
     spelled = find_language(language) if isinstance(language, str) else language
-    chosen = [functions] if isinstance(functions, Function) else list(functions)
+    chosen = [function for section in sections for function in section.functions]
     if precision not in spelled.types:
         raise ValueError(
             f"precision {precision!r} is not in {spelled.name}; allowed: {', '.join(spelled.types)}"
@@ -50,14 +86,28 @@ def write_source(
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"function name {name!r} occurs twice; allowed: once")
-    blocks = []
-    if header:
-        blocks.append(_header_comment(spelled, header))
-    if spelled.prologue[precision]:
-        blocks.append(list(spelled.prologue[precision]))
-    for function in chosen:
-        taken = _taken_names(spelled, precision, function, names)
-        blocks.append(_function(function, spelled, precision, constants, taken))
+    if namespace is not None and not spelled.namespaces:
+        raise ValueError(
+            f"namespace {namespace!r} is not possible in {spelled.name}; allowed: none"
+        )
+    blocks = [header_comment(spelled, sections[0].header)] if sections[0].header else []
+    guarded = guard is not None and spelled.preprocessor
+    blocks += [[f"#ifndef {guard}", f"#define {guard}"]] if guarded else []
+    blocks += [list(spelled.prologue[precision])] if spelled.prologue[precision] else []
+    blocks += [[f"namespace {namespace} {{"]] if namespace is not None else []
+    records = record_declarations(spelled, precision, chosen)
+    for section in sections:
+        if section is not sections[0] and section.header:
+            blocks.append(header_comment(spelled, section.header))
+        own = record_declarations(spelled, precision, section.functions)
+        blocks += [record for record in own if record in records]
+        records = [record for record in records if record not in own]
+        for function in section.functions:
+            taken = _taken_names(spelled, precision, function, names)
+            blocks.append(_function(function, spelled, precision, constants, taken))
+    blocks += ending
+    blocks += [[f"}} {spelled.comment} namespace {namespace}"]] if namespace is not None else []
+    blocks += [[f"#endif {spelled.comment} {guard}"]] if guarded else []
     return "\n\n".join("\n".join(block) for block in blocks) + "\n"
 
 
@@ -70,7 +120,9 @@ def _function(
             f"{function.name} takes {len(program.steps)} operations; "
             f"allowed in {language.name}: at most {language.max_operations}"
         )
-    statements = choose_statements(program, input_names(function), language, precision, taken)
+    statements = choose_statements(
+        program, _written_inputs(function, language), language, precision, taken
+    )
     taken = taken | set(statements.names.values())
     pool = ConstantPool(free_name("coefficients", taken)) if constants == "table" else None
     context = WritingContext(program, language, precision, statements.names, pool)
@@ -88,7 +140,7 @@ def _function(
         )
     body += _results(function, context)
 
-    lines = _function_comment(function, language)
+    lines = function_comment(function, language)
     lines += break_lines(_signature(function, language, kind), "")
     lines += [language.body_opening] if language.body_opening is not None else []
     lines += _convert_arguments(function, language, kind)
@@ -103,6 +155,17 @@ def _results(function: Function, context: WritingContext) -> list[str]:
     if function.result is None:
         return _statement(language, language.return_statement, values[0])
     lines = []
+    record = record_of(language, function)
+    if record is not None:
+        name = function.result_name
+        lines.append(INDENT + language.record_variable.format(type=record.name, name=name))
+        for index, value in enumerate(values):
+            place = f"{name}.{record.place(index)}"
+            lines += _statement(language, _STORE, value, place=place)
+        zero: Tokens = [literal(context, 0.0)]
+        for place in empty_components(record, len(values)):
+            lines += _statement(language, _STORE, zero, place=f"{name}.{place}")
+        return lines + _statement(language, language.return_statement, [name])
     if language.return_all is None:
         for index, value in enumerate(values):
             names = {"name": function.result_name, "index": str(index)}
@@ -129,7 +192,10 @@ def _statement(language: Language, template: str, value: Tokens, **parts: str) -
 def _signature(function: Function, language: Language, kind: str) -> Tokens:
     arguments = [_argument(language, parameter, kind) for parameter in function.parameters]
     head = language.scalar_head
-    if function.result is not None:
+    record = record_of(language, function)
+    if record is not None:
+        kind = record.name
+    elif function.result is not None:
         head = language.array_head
         if language.array_result:
             names = {"type": kind, "name": function.result_name, "size": function.result}
@@ -142,8 +208,23 @@ def _signature(function: Function, language: Language, kind: str) -> Tokens:
 
 
 def _argument(language: Language, parameter: Parameter, kind: str) -> str:
+    record = record_of(language, parameter)
+    if record is not None:
+        return language.scalar_argument.format(type=record.name, name=parameter.name)
     template = language.scalar_argument if parameter.size is None else language.array_argument
     return template.format(type=kind, name=parameter.name, size=parameter.size)
+
+
+def _written_inputs(function: Function, language: Language) -> tuple[str, ...]:
+    """Return how each number of a function's input is written in code."""
+    names = []
+    for parameter in function.parameters:
+        record = record_of(language, parameter)
+        if record is None or parameter.size is None:
+            names += input_names(replace(function, parameters=(parameter,), result=None))
+        else:
+            names += [f"{parameter.name}.{record.place(k)}" for k in range(parameter.size)]
+    return tuple(names)
 
 
 def _convert_arguments(function: Function, language: Language, kind: str) -> list[str]:
@@ -171,32 +252,6 @@ def _pool_declaration(context: WritingContext, pool: ConstantPool) -> list[str]:
     return [INDENT + opening, *rows, INDENT + language.table_closing.format()]
 
 
-def _header_comment(language: Language, header: Mapping[str, str]) -> list[str]:
-    lines = []
-    for label, text in header.items():
-        lines += _comment(language, f"{label}: {text}")
-    return lines
-
-
-def _function_comment(function: Function, language: Language) -> list[str]:
-    domains = []
-    for parameter in function.parameters:
-        if parameter.size is not None:
-            # An array holds another function's results; its domain is a rough estimate.
-            continue
-        low, high = (f"{bound:.6g}" for bound in parameter.domain)
-        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-        domains.append(f"{parameter.name} in [{low}, {high}]{unit}")
-    lines = _comment(language, function.summary)
-    return lines + (_comment(language, ", ".join(domains) + ".") if domains else [])
-
-
-def _comment(language: Language, text: str) -> list[str]:
-    # A backslash at the end of a line would make the next line of code part of the comment.
-    safe = ascii_text(text).replace("\\", "/")
-    return wrap_words(safe, f"{language.comment} ", f"{language.comment}   ")
-
-
 def _taken_names(
     language: Language, precision: str, function: Function, functions: Sequence[str]
 ) -> set[str]:
@@ -207,20 +262,24 @@ def _taken_names(
     """
     called = {
         word
-        for how in language.functions[precision].values()
-        for word in re.findall(r"[A-Za-z_]\w*", how.template)
+        for template in [
+            *(how.template for how in language.functions[precision].values()),
+            *language.clamps.get(precision, ()),
+        ]
+        for word in re.findall(r"[A-Za-z_]\w*", template)
     }
     own = [parameter.name for parameter in function.parameters]
+    types = [each.record.name for each in (function, *function.parameters) if each.record]
     if function.result is not None:
         own.append(function.result_name)
-    for name in [function.name, *own]:
+    for name in [function.name, *own, *types]:
         unfit = name in language.reserved or name in called
         if unfit or "__" in name or name.startswith(("_", "gl_")):
             raise ValueError(
                 f"name {name!r} cannot be used in {language.name}; allowed: identifiers that are "
                 "no reserved word or function, without '_' in front, '__' or 'gl_'"
             )
-    for name in own:
+    for name in [*own, *types]:
         if name in functions:
             raise ValueError(f"name {name!r} is a function and a parameter; allowed: one of them")
-    return {*language.reserved, *called, *own, *functions}
+    return {*language.reserved, *called, *own, *types, *functions}

@@ -6,8 +6,13 @@ from dataclasses import dataclass
 
 from programs.languages import Language
 from programs.printing.expression import spelling
-from programs.printing.identifiers import as_identifier, descriptive_name, free_name
-from programs.program import Operand, Program, is_value
+from programs.printing.identifiers import (
+    as_identifier,
+    camel_case,
+    descriptive_name,
+    free_name,
+)
+from programs.program import Operand, Program, Step, is_value
 
 # The largest number of operations in one expression: a longer one would be hard to read.
 MAX_OPERATIONS = 48
@@ -15,6 +20,28 @@ MAX_OPERATIONS = 48
 MAX_NESTED_CALLS = 4
 # A value that is used once keeps its author's name if it takes at least this many operations.
 MIN_OPERATIONS_TO_NAME = 3
+# Operation -> the name of a result that neither the author nor its operands name
+NOUNS: dict[str, str] = {
+    operation: noun
+    for noun, operations in {
+        "sum": "add",
+        "difference": "sub",
+        "product": "mul",
+        "quotient": "div",
+        "power": "pow exp exp2 expm1",
+        "logarithm": "log log1p",
+        "root": "sqrt rsqrt",
+        "limited": "min max",
+        "rounded": "floor ceil",
+        "chosen": "select",
+        "holds": "lt le gt ge eq ne and or not",
+        "magnitude": "abs",
+        "negative": "neg",
+        "angle": "asin acos atan atan2",
+        "ratio": "sin cos tan sinh cosh tanh",
+    }.items()
+    for operation in operations.split()
+}
 
 
 @dataclass(frozen=True)
@@ -64,8 +91,8 @@ def choose_statements(
         )
         too_much = size > MAX_OPERATIONS or depth > MAX_NESTED_CALLS
         if value in repeated or too_much or authored or (uses[value] > 1 and not bare_sign):
-            wanted = _wanted_name(program, value, names) or repeated.get(value) or "t"
-            names[value] = free_name(wanted, used)
+            wanted = _wanted_name(program, value, names) or repeated.get(value)
+            names[value] = free_name(camel_case(wanted or NOUNS[step.operation]), used)
             used.add(names[value])
             chosen.append(value)
     return Statements(tuple(chosen), names)
@@ -91,11 +118,31 @@ def _written_repeatedly(
 
 def _wanted_name(program: Program, value: int, names: dict[int, str]) -> str | None:
     step = program.steps[value - len(program.inputs)]
-    hint = as_identifier(step.hint or "")
-    if hint in program.inputs and step.operation in ("min", "max"):
+    hint = camel_case(as_identifier(step.hint or ""))
+    argument = _clamped_input(program, step)
+    if argument is not None and hint in ("", argument):
         # After alpha = clip(alpha, …), the argument and the clamped value need different names.
-        return f"{hint}Clamped"
+        return f"{argument}Clamped"
     return hint or _description(program, value, names)
+
+
+def _clamped_input(program: Program, step: Step) -> str | None:
+    """Return the name of the input that a step clamps; None if it does not clamp an input.
+
+    A clamp consists of a minimum and a maximum. If an author's hint has the name of an input, one
+    of the two is enough.
+    """
+    first, hint = len(program.inputs), camel_case(as_identifier(step.hint or ""))
+    if step.operation not in ("min", "max"):
+        return None
+    inner = step.operands[0]
+    if not is_value(inner):
+        return None
+    if inner >= first and program.steps[inner - first].operation in ("min", "max"):
+        inner = program.steps[inner - first].operands[0]
+    elif hint not in program.inputs:
+        return None
+    return program.inputs[inner] if is_value(inner) and inner < first else None
 
 
 def _description(program: Program, value: int, names: dict[int, str]) -> str | None:
@@ -105,7 +152,7 @@ def _description(program: Program, value: int, names: dict[int, str]) -> str | N
         if not is_value(operand):
             return None
         if operand in names:
-            return as_identifier(names[operand])
+            return camel_case(as_identifier(names[operand]))
         # If only b·b·b uses b·b, then b·b has no statement. The name b3 is still made of b2 and b.
         inner = program.steps[operand - len(program.inputs)]
         return _description(program, operand, names) if inner.operation == "mul" else None

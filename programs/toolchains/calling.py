@@ -29,16 +29,28 @@ def call_statements(
     lines, arguments, column = [], [], 0
     for index, parameter in enumerate(function.parameters):
         name, size = f"shadefit_{index}", parameter.size
-        declared = scalar if size is None else array
-        lines.append(declared.format(real=real, name=name, size=size))
-        places = [name] if size is None else [f"{name}[{cell}]" for cell in range(size)]
+        if parameter.record is not None and size is not None:
+            lines.append(scalar.format(real=parameter.record.name, name=name))
+            places = [f"{name}.{parameter.record.place(cell)}" for cell in range(size)]
+        else:
+            declared = scalar if size is None else array
+            lines.append(declared.format(real=real, name=name, size=size))
+            places = [name] if size is None else [f"{name}[{cell}]" for cell in range(size)]
         lines += [f"{place} = {number(cell)};" for cell, place in enumerate(places, column)]
         arguments.append(name)
         column += len(places)
     count = result_count(function)
     lines.append(array.format(real=real, name="shadefit_value", size=count))
-    if function.result is None:
-        lines.append(f"shadefit_value[0] = {function.name}({', '.join(arguments)});")
+    called = f"{function.name}({', '.join(arguments)});"
+    if function.record is not None:
+        lines.append(scalar.format(real=function.record.name, name="shadefit_record"))
+        lines.append(f"shadefit_record = {called}")
+        lines += [
+            f"shadefit_value[{cell}] = shadefit_record.{function.record.place(cell)};"
+            for cell in range(count)
+        ]
+    elif function.result is None:
+        lines.append(f"shadefit_value[0] = {called}")
     else:
         lines.append(f"{function.name}({', '.join([*arguments, given])});")
     lines += [] if store is None else [store(cell) for cell in range(count)]

@@ -28,6 +28,7 @@ TOOLCHAINS: dict[str, Toolchain] = {
         native.CPP,
         _from_module("hlsl", hlsl),
         _from_module("glsl", glsl),
+        Toolchain("glsl-es", glsl.missing_reason_es, glsl.evaluate_es, glsl.versions, glsl.NOTE),
         _from_module("slang", slang),
         _from_module("metal", metal),
         _from_module("wgsl", wgsl),

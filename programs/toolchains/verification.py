@@ -24,6 +24,7 @@ from programs.languages import PRECISIONS, language
 from programs.precision import number_type
 from programs.printing.printer import write_source
 from programs.program import Program, evaluate
+from programs.toolchains.difference import Difference, difference, text_of
 from programs.toolchains.process import ToolchainError
 from programs.toolchains.registry import toolchain
 from programs.tracing.tracer import trace
@@ -32,6 +33,10 @@ from programs.tracing.tracer import trace
 SLACK = 8.0
 # In units in the last place: allowed even if every operation happens to be exact in NumPy.
 LEAST_UNITS = 4.0
+
+# Half precision is good enough if every value is finite and rounding moves none by more than this
+# part of the largest value. Values of the quantities are fractions, so it is about two per cent.
+HALF_SHARE = 0.02
 
 # Evaluates one function at rows of inputs (n, k): values (n, m)
 Run = Callable[[Function, np.ndarray], np.ndarray]
@@ -71,33 +76,15 @@ class CallSequence:
 
 
 @dataclass(frozen=True)
-class Difference:
-    """The largest and the rms difference of the finite values from the expected values.
-
-    `not_finite` is the number of other values: near a pole, a denominator may be rounded to zero.
-    """
-
-    largest: float
-    rms: float
-    not_finite: int = 0
-
-    def within(self, other: "Difference") -> bool:
-        """Return whether no field of this difference is larger than that of the other."""
-        return (
-            self.largest <= other.largest
-            and self.rms <= other.rms
-            and self.not_finite <= other.not_finite
-        )
-
-
-@dataclass(frozen=True)
 class Check:
-    """The result of verifying one language; `status` is "passed", "failed" or "not checked".
+    """The result of verifying one language.
 
-    `reason` says why the status is not "passed". `form` is the difference from the float64 program
-    at the same rounded inputs, `units` the same in units in the last place of the program's value,
-    and `allowed` the largest `form` that passes. `integral` is the difference from the exact values
-    at `integral_points` points, or None if there are no exact values.
+    `status` is "passed", "failed", "not checked" or, only in half precision, "not good enough": the
+    code is right, but its rounding moves values too far (`Trial.half_allowed`). `reason` says why
+    the status is not "passed". `form` is the difference from the float64 program at the same
+    rounded inputs, `units` the same in units in the last place of the program's value, and
+    `allowed` the largest `form` that passes. `integral` is the difference from the exact values at
+    `integral_points` points, or None if there are no exact values.
     """
 
     language: str
@@ -188,6 +175,12 @@ class Trial:
             raise ValueError("exact is None; allowed here: a function that returns exact values")
         return self.exact(self.points[: self.exact_points])
 
+    @property
+    def half_allowed(self) -> Difference:
+        """The difference from `form` with which half precision is good enough."""
+        largest = HALF_SHARE * float(np.max(np.abs(self.form)))
+        return Difference(largest, largest, 0)
+
     def against_integral(self, values: np.ndarray) -> Difference:
         """Return the difference of values (n,) from the exact values, where these are known."""
         return difference(values[: len(self.integral)], self.integral)
@@ -206,24 +199,6 @@ def corners(axes: Sequence[DomainAxis]) -> np.ndarray:
         for axis in axes
     ]
     return np.array(list(product(*lines)), np.float64)
-
-
-def difference(
-    values: np.ndarray, expected: np.ndarray, units: np.ndarray | None = None
-) -> Difference:
-    """Return the difference of values (n,) from expected ones, which are finite.
-
-    It is divided by `units` (n,), if given.
-    """
-    finite = np.isfinite(values)
-    apart = np.abs(values[finite] - expected[finite])
-    apart = apart if units is None else apart / units[finite]
-    count = max(len(apart), 1)
-    return Difference(
-        float(np.max(apart, initial=0.0)),
-        float(np.sqrt(np.sum(apart**2) / count)),
-        int(np.sum(~finite)),
-    )
 
 
 def run_code(trial: Trial, key: str, source: str) -> np.ndarray:
@@ -261,11 +236,14 @@ def check(trial: Trial, key: str) -> Check:
     spacing = np.spacing(np.abs(trial.form).astype(PRECISIONS[precision])).astype(np.float64)
     passed = apart.within(trial.allowed)
     known = trial.exact is not None
+    coarse = precision == "half" and not apart.within(trial.half_allowed)
+    status = "failed" if not passed else "not good enough" if coarse else "passed"
+    limit = trial.half_allowed if passed else trial.allowed
     return Check(
         key,
         precision,
-        "passed" if passed else "failed",
-        None if passed else _why_failed(apart, trial.allowed),
+        status,
+        None if status == "passed" else _why_not(apart, limit),
         chain.tool,
         chain.note,
         len(values),
@@ -277,11 +255,5 @@ def check(trial: Trial, key: str) -> Check:
     )
 
 
-def _why_failed(apart: Difference, allowed: Difference) -> str:
+def _why_not(apart: Difference, allowed: Difference) -> str:
     return f"differs from the float64 form by {text_of(apart)}; allowed: {text_of(allowed)}"
-
-
-def text_of(apart: Difference) -> str:
-    """Write a difference with two digits; more digits would change with the compiler's version."""
-    others = f", {apart.not_finite} values not finite" if apart.not_finite else ""
-    return f"rms {apart.rms:.1e}, largest {apart.largest:.1e}{others}"

@@ -71,6 +71,14 @@ def _assignments(file: str) -> dict[Position, str]:
                 | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value)
                 | ast.NamedExpr(target=ast.Name(id=name), value=value)
             ):
-                span = (value.lineno, value.end_lineno, value.col_offset, value.end_col_offset)
-                names[span] = name
+                for part in _alternatives(value):
+                    span = (part.lineno, part.end_lineno, part.col_offset, part.end_col_offset)
+                    names[span] = name
     return names
+
+
+def _alternatives(value: ast.expr) -> list[ast.expr]:
+    """Return an expression, and for `x if condition else y` also x and y."""
+    if not isinstance(value, ast.IfExp):
+        return [value]
+    return [value, *_alternatives(value.body), *_alternatives(value.orelse)]

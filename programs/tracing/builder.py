@@ -15,9 +15,10 @@ class Builder:
     """A program to which steps are added one by one.
 
     Operations on constants are folded, equal steps are shared, and expressions such as x·1, x·0,
-    x/1, x±0, x/2, −(−x), x+(−y), abs(−x) and a selection that is a minimum are simplified. Every
-    simplification leaves each finite result unchanged to the last bit, except for the sign of a
-    zero. Sums and products are therefore never re-associated.
+    x/1, x±0, x/2, −(−x), x+(−y), abs(−x), abs(max(x, 0)), max(max(x, 1), 2) and a selection that is
+    a minimum are simplified. Every simplification leaves each finite result unchanged to the last
+    bit, except for the sign of a zero, and except for the cosine and sine of an arc cosine, which
+    become more precise. Sums and products are therefore never re-associated.
     """
 
     def __init__(self, inputs: Sequence[str], limit: int, keep_undefined: bool = False):
@@ -46,6 +47,9 @@ class Builder:
             if not self.keep_undefined or np.isfinite(folded):
                 return folded
             return self._append(operation, operands)
+        if operation in ("min", "max") and not is_value(operands[0]):
+            # In C, where these are comparisons, the second operand is the result for NaN.
+            operands = operands[::-1]
         simpler = self._simplify(operation, operands)
         return self._append(operation, operands) if simpler is None else simpler
 
@@ -92,8 +96,12 @@ class Builder:
             simplest = self.apply("neg", operands[1])
         elif operation in ("min", "max", "and", "or") and _same(*operands):
             simplest = operands[0]
+        elif operation in ("min", "max") and not is_value(constant):
+            simplest = self._simplify_bounds(operation, value, constant)
         elif operation == "select":
             simplest = self._simplify_selection(*operands)
+        elif operation in ("cos", "sin"):
+            simplest = self._simplify_angle(operation, operands[0])
         else:
             simplest = self._simplify_signs(operation, operands)
         return simplest
@@ -121,6 +129,31 @@ class Builder:
             return self.apply(larger, left, right)
         return None
 
+    def _simplify_angle(self, operation: str, angle: Operand) -> Operand | None:
+        """Make cos(acos(x)) x, and sin(acos(x)) the root of 1 − x²: no angle is needed."""
+        cosine = self._operand_of("acos", angle)
+        if cosine is None or operation == "cos":
+            return cosine
+        factors = self.apply("sub", 1.0, cosine), self.apply("add", 1.0, cosine)
+        return self.apply("sqrt", self.apply("mul", *factors))
+
+    def _simplify_bounds(self, operation: str, value: Operand, bound: float) -> Operand | None:
+        """Make one bound of two: max(max(x, 1), 2) is max(x, 2)."""
+        inner = self._bound_of(operation, value)
+        if inner is None:
+            return None
+        operand, other = inner
+        tighter = max(bound, other) if operation == "max" else min(bound, other)
+        return value if tighter == other else self.apply(operation, operand, tighter)
+
+    def _bound_of(self, operation: str, value: Operand) -> tuple[Operand, float] | None:
+        """Return x and b if `value` is operation(x, b) with a constant b, else None."""
+        index = value - len(self.inputs) if is_value(value) else -1
+        if index < 0 or self.steps[index].operation != operation:
+            return None
+        operand, bound = self.steps[index].operands
+        return None if is_value(bound) else (operand, bound)
+
     def _simplify_signs(self, operation: str, operands: tuple[Operand, ...]) -> Operand | None:
         bare = [self._operand_of("neg", operand) for operand in operands]
         result: Operand | None = None
@@ -130,6 +163,9 @@ class Builder:
             result = self._operand_of("not", operands[0])
         elif operation == "abs" and bare[0] is not None:
             result = self.apply("abs", bare[0])
+        elif operation == "abs":
+            lower = self._bound_of("max", operands[0])
+            result = operands[0] if lower is not None and lower[1] >= 0 else None
         elif operation == "add" and bare[1] is not None:
             result = self.apply("sub", operands[0], bare[1])
         elif operation == "add" and bare[0] is not None:

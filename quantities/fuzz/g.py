@@ -3,18 +3,26 @@
 import integrals
 from integrals.fuzz.g import ambient_scattering
 from programs.functions import Function, Parameter, function
-from quantities.calling_convention import Argument, CallingConvention
+from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.g_forms import AXES, DECAYS, FACTORS, RATES, candidates, decay_g, tied_g
 from quantities.fuzz.supplement import RATIONAL_G
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
 
+# The closed form takes logarithms of the density. The code clamps it to this at least; for a layer
+# so thin, G is at most a thousandth (in half precision a sixteenth) at the least v·n of the domain.
+_LEAST_DENSITY = {"half": 2.0**-14, "float": 1e-6, "double": 1e-6}
+# From this density on, the layer is opaque: exp(−d) is below the rounding of float64.
+_OPAQUE = 64.0
 
-def exact_functions(_: str) -> tuple[Function, ...]:
+
+def exact_functions(precision: str) -> tuple[Function, ...]:
     """Return the closed form as a function of v·n and the density."""
 
     def value(cos_v, density):
-        return ambient_scattering(density, cos_v)
+        layer = clamped(density, _LEAST_DENSITY[precision], _OPAQUE)
+        value = ambient_scattering(layer, clamped(cos_v, AXES[1].lower, 1.0))
+        return clamped(value, 0.0, 1.0)
 
     parameters = (
         Parameter("NdotV", (AXES[1].lower, AXES[1].upper)),
@@ -36,12 +44,14 @@ G = Problem(
     candidates=lambda _: candidates(),
     calling=CallingConvention(
         name="FuzzGApprox",
-        summary="G ({equation}); clamps density from above.",
+        summary="G{equation}; clamps to the domain, and density to 0 from below.",
         arguments=(
-            Argument("cos_v", "NdotV"),
-            Argument("density", "density", clamp="above", local="density"),
+            Argument("cos_v", "NdotV", clamp="both", local="NdotV"),
+            # At d = 0, G is 0 for every ν > 0: a material without a layer stays as it is, at its
+            # silhouette too. The forms tend to this value, so density is not clamped to 0.001.
+            Argument("density", "density", clamp="both", local="density", least=0.0),
         ),
-        remark="NdotV = v·n of the view's direction v; density = NdotV = 0 is 0/0",
+        remark="NdotV = v·n of the view's direction v; G = 0 at density = 0",
     ),
     closed_form=ambient_scattering,
     exact_code=ExactCode(
@@ -49,7 +59,7 @@ G = Problem(
         AXES,
         exact_functions,
         lambda points: (points[:, ::-1],),
-        "NdotV = v·n of the view's direction v; the result is NaN if NdotV or density is 0",
+        "NdotV = v·n of the view's direction v; clamps NdotV to the domain",
     ),
     plot=PlotHints(
         {

@@ -45,6 +45,19 @@ FACTORS: dict[str, Piece] = {
     ),
 }
 DECAYS = ("exponential", "power")
+# The rates and factors as text for the header of exported code. k₀, k₁, … stand for coefficients.
+_RATE_TEXTS = {
+    "constant": "x = d (1/ν + k0)",
+    "scaled": "x = d (k0 + k1/ν)",
+    "pole": "x = d (k0 + k1/(k2 + ν + d) + 1/ν)",
+}
+_FACTOR_TEXTS = {
+    "linear": "F = 1/(1 + k3 ν)",
+    "affine": "F = 1/(k3 + k4 ν)",
+    "pole": "F = k3 + k4/(k5 + ν)",
+    "inverse": "F = 1/(1 + ν (k3 + k4/(k5 + ν)))",
+}
+_ARGUMENTS = "d = density, ν = NdotV"
 
 
 @functools.cache
@@ -63,12 +76,12 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
     def value(c, density: Scalar, cos_v: Scalar) -> Array:
         d, nu = jnp.asarray(density), jnp.asarray(cos_v)
         x = rate_of(c[:split], d, nu)
-        f = factor_of(c[split : split + len(factor_names)], d, nu)
+        F = factor_of(c[split : split + len(factor_names)], d, nu)
         if decay == "exponential":
-            return (1 - jnp.exp(-x)) * f
+            return (1 - jnp.exp(-x)) * F
         base = 1 + x * (c[-2] + c[-1] * x)
         square = base * base
-        return (1 - 1 / (square * square)) * f
+        return (1 - 1 / (square * square)) * F
 
     parts = {"rate": rate_names, "factor": factor_names, "decay": power_names}
     # This start is about right for small d and small ν. The fit also starts from multiples of it.
@@ -85,6 +98,7 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         stages=(Stage(value),),
         starts=(start, start * 1.3, start * 0.75),
         shape={"decay": decay, "rate": rate, "factor": factor},
+        notation=f"{_ARGUMENTS}, {_RATE_TEXTS[rate]}, {_FACTOR_TEXTS[factor]}",
     )
 
 
@@ -100,9 +114,8 @@ def tied_g(*, poles: int, root: int) -> Form:
     def value(c, density: Scalar, cos_v: Scalar) -> Array:
         d, nu = jnp.asarray(density), jnp.asarray(cos_v)
         w = c[0] + c[1] / (c[2] + nu) if poles else c[0]
-        x = d * (1 / nu + w)
-        if root:
-            x = x / (1 + c[-1] * jnp.sqrt(d))
+        thin = d * (1 / nu + w)
+        x = thin / (1 + c[-1] * jnp.sqrt(d)) if root else thin
         return (1 - jnp.exp(-x)) / (1 + nu * w)
 
     # For an infinitely dense layer G is about 1/(1 + 3ν). The fit also starts from 1.3 times this.
@@ -119,6 +132,7 @@ def tied_g(*, poles: int, root: int) -> Form:
         stages=(Stage(value),),
         starts=(first, first * 1.3),
         shape={"poles": poles, "root": root},
+        notation=_ARGUMENTS,
         proofs=Proofs(positive=unguarded),
     )
 

@@ -46,6 +46,7 @@ def material_form(
     material: Callable[..., tuple[Array, ...]],
     along: Callable[..., Array],
     proofs: DirectionProofs,
+    notation: str = "",
 ) -> Form:
     """Return a form of P_s of two stages, for α ≥ `least_alpha`.
 
@@ -74,13 +75,20 @@ def material_form(
         axes=axes,
         coefficient_names=coefficient_names,
         stages=(
-            Stage(material, "What {name} needs to know of one material; clamps to the domain."),
-            Stage(along, "P_s for one direction of light."),
+            Stage(
+                material,
+                "What {name} needs to know of one material; clamps to the domain.",
+                result_name="m",
+            ),
+            Stage(
+                along, "P_s for one direction of light; clamps to the domain.", arguments=("c", "a")
+            ),
         ),
         shared=2,
         inputs=cosines_of_light,
         starts=starts,
         shape=shape,
+        notation=f"c = NdotU, a = TdotU{notation}; m0, m1, … are the results for the material",
         proofs=Proofs(
             axes=(*axes[:3], COS_PHI),
             value=value,

@@ -1,12 +1,13 @@
 """The quantity P_s: the part of the scattered light that goes down to the base."""
 
+import jax.numpy as jnp
 import numpy as np
 
 import integrals
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
 from integrals.reference import restricted
-from programs.functions import Function, Parameter, function
-from quantities.calling_convention import Argument, CallingConvention
+from programs.functions import Function, Parameter, Record, function
+from quantities.calling_convention import MATERIAL, Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.lights import cosines_at
 from quantities.fuzz.ps_error import error_code
@@ -17,6 +18,8 @@ from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, P
 _COSINE = (0.0, 1.0)
 # The error of the closed form in float32 is measured and stated for α from this on.
 LEAST_EXACT_ALPHA = 0.05
+# The code clamps α to this at least. Smaller fourth powers would leave the range of the precision.
+_LEAST_ALPHA = {"half": LEAST_EXACT_ALPHA, "float": 1e-6, "double": 1e-6}
 
 
 def exact_functions(precision: str) -> tuple[Function, ...]:
@@ -24,10 +27,15 @@ def exact_functions(precision: str) -> tuple[Function, ...]:
 
     The precision ("half", "float" or "double") decides how many Newton steps compute the root.
     """
-    steps = FLOAT64_STEPS if precision == "double" else FLOAT32_STEPS
 
     def exact(cos_un, cos_ut, cos_nt, alpha):
-        return scattered_fraction(cos_un, cos_ut, cos_nt, alpha, steps)
+        return _fraction(
+            cos_un,
+            cos_ut,
+            clamped(cos_nt, -1.0, 1.0),
+            clamped(alpha, _LEAST_ALPHA[precision], 1.0),
+            precision,
+        )
 
     parameters = (
         Parameter("NdotU", _COSINE),
@@ -37,6 +45,44 @@ def exact_functions(precision: str) -> tuple[Function, ...]:
     )
     summary = "P_s in closed form, without coefficients."
     return (function("FuzzPsExact", parameters, exact, summary),)
+
+
+def staged_exact_functions(
+    precision: str, record: Record, cosines: bool
+) -> tuple[Function, Function]:
+    """Return the closed form as two functions: of α and θf (or n·t), and of u·n and u·t.
+
+    The first returns α and n·t in the structure, and the second takes it.
+    """
+
+    def material(alpha, fibre):
+        cos_nt = clamped(fibre, *_COSINE) if cosines else jnp.cos(clamped(fibre, 0.0, np.pi / 2))
+        return clamped(alpha, _LEAST_ALPHA[precision], 1.0), cos_nt
+
+    def value(material, cos_un, cos_ut):
+        return _fraction(cos_un, cos_ut, material[1], material[0], precision)
+
+    fibre = Parameter("NdotT", _COSINE) if cosines else Parameter("thetaF", (0.0, np.pi / 2), "rad")
+    first = (Parameter("alpha", (LEAST_EXACT_ALPHA, 1.0)), fibre)
+    second = (
+        Parameter(MATERIAL, (0.0, 1.0), size=2, record=record),
+        Parameter("NdotU", _COSINE),
+        Parameter("TdotU", (-1.0, 1.0)),
+    )
+    summary = "What FuzzPs needs to know of one material; clamps to the domain."
+    return (
+        function("FuzzPsMaterial", first, material, summary, 2, MATERIAL, record),
+        function("FuzzPs", second, value, "P_s for one direction of light, in closed form."),
+    )
+
+
+def _fraction(cos_un, cos_ut, cos_nt, alpha, precision: str):
+    """Return P_s in closed form for u·n and u·t that are not clamped yet."""
+    steps = FLOAT64_STEPS if precision == "double" else FLOAT32_STEPS
+    value = scattered_fraction(
+        clamped(cos_un, *_COSINE), clamped(cos_ut, -1.0, 1.0), cos_nt, alpha, steps
+    )
+    return clamped(value, 0.0, 1.0)
 
 
 PS = Problem(
@@ -62,13 +108,16 @@ PS = Problem(
         summary="P_s for one direction of light.",
         arguments=(
             Argument("alpha", "alpha", clamp="both", local="alpha"),
-            Argument("theta_f", "thetaF", clamp="both", local="theta_f"),
+            Argument("theta_f", "thetaF", clamp="both", local="theta_f", cosine="NdotT"),
         ),
         remark="alpha, the roughness, is the projected area along the fibre t, thetaF its polar "
         "angle: turn t so that NdotT >= 0; NdotU = u·n and TdotU = u·t of the light's direction u. "
         "What is proven holds for cosines of unit vectors",
         second=(("NdotU", _COSINE), ("TdotU", (-1.0, 1.0))),
         columns=lambda points: np.stack(cosines_at(points)[:2], axis=1),
+        # Cosines that belong to no unit vectors, and rounding, lead out of it.
+        codomain=(0.0, 1.0),
+        material="FuzzMaterial",
     ),
     closed_form=fraction_at,
     error_code=error_code,
@@ -80,6 +129,7 @@ PS = Problem(
         "NdotU = u·n, TdotU = u·t, NdotT = n·t, all unit vectors; t and −t are one fibre: turn t "
         "so that NdotT >= 0",
         "none but what the root's steps leave",
+        staged_exact_functions,
     ),
     plot=PlotHints(
         {

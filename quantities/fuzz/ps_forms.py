@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from jax.ad_checkpoint import checkpoint_name
 
 from fitting.form import Form
 from fitting.shapes.surfaces import flat_start, surface_names, surface_values
@@ -20,9 +21,14 @@ from quantities.fuzz.material import DirectionProofs, material_form
 from shading.types import Scalar
 
 MAX_DEGREE = 4
-# A lower limit of denominators and of λ. It changes no value for unit vectors u, n and t. It avoids
-# division by zero after rounding, and for cosines that belong to no unit vectors.
+# A lower limit of denominators, of radicands and of λ. It changes no value for unit vectors u, n
+# and t. It avoids division by zero after rounding, and for cosines that belong to no unit vectors.
 LEAST = 1e-6
+
+
+def _named(names: list[str], values: list[Array]) -> list[Array]:
+    """Give values names that exported code uses for its variables."""
+    return [checkpoint_name(value, name) for name, value in zip(names, values, strict=True)]
 
 
 @functools.cache
@@ -40,11 +46,14 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
         """Return m₀ … m₄, and with `skew` also m₅ and m₆."""
-        alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
-        y, kappa = b * b, (1 - alpha) * (1 + alpha)
-        u = surface_values(coefficients, len(surfaces), degree, alpha, y)
-        m = (-(1 - alpha) * u[0], kappa * b * u[1], 1 - kappa * y, u[2], u[3])
-        return (*m, b * u[4], (1 - alpha) * b * u[5]) if skew else m
+        alpha = jnp.asarray(alpha)
+        b = jnp.cos(theta_f)
+        y = b * b
+        beta = 1 - alpha
+        kappa = beta * (1 + alpha)
+        u = _named(surfaces, surface_values(coefficients, len(surfaces), degree, alpha, y))
+        m = (-beta * u[0], kappa * b * u[1], 1 - kappa * y, u[2], u[3])
+        return (*m, b * u[4], beta * b * u[5]) if skew else m
 
     def radicand(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
         c, a = cos_un, cos_ut
@@ -52,8 +61,12 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         return m[2] + m[3] * c + curved
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        c, a = cos_un, cos_ut
-        return 0.5 + _above(m, c, a) / jnp.sqrt(radicand(m, c, a))
+        r = jnp.maximum(radicand(m, cos_un, cos_ut), LEAST)
+        return 0.5 + _above(m, cos_un, cos_ut) / jnp.sqrt(r)
+
+    def unlimited(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        """Return the form without the lower limit of its radicand."""
+        return 0.5 + _above(m, cos_un, cos_ut) / jnp.sqrt(radicand(m, cos_un, cos_ut))
 
     def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
         """Return r − 4N², where the form is ½ + N/√r (docs/range.md)."""
@@ -75,7 +88,8 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         starts=(flat_start(values, degree, {3: (1.0, 1.7)}),),
         material=material,
         along=along,
-        proofs=DirectionProofs(along, margins, radicand),
+        proofs=DirectionProofs(unlimited, margins, radicand),
+        notation="; the radicand is r",
     )
 
 
@@ -91,20 +105,27 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
     surfaces = ["u0", "u1", "u2", "u3", "u4"][:terms]
 
     def _parts(m, c, a):
+        # notation: h and R of the equation
         sigma = jnp.sqrt(1 - m[0] * a * a)
-        h = sigma - m[1] * a + m[5] * c if terms > 3 else sigma - m[1] * a
-        return sigma, h, jnp.sqrt(h * h + m[2] * c)
+        h = sigma - m[1] * a
+        if terms > 3:
+            h = h + m[5] * c
+        R = jnp.sqrt(h * h + m[2] * c)
+        return sigma, h, R
 
     def _slope(m, c):
         return m[4] + m[6] * c if terms > 4 else m[4]
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
         """Return m₀ … m₄, and m₅ and m₆ if the form has them."""
-        alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
-        y, kappa, beta = b * b, (1 - alpha) * (1 + alpha), 1 - alpha
+        alpha = jnp.asarray(alpha)
+        b = jnp.cos(theta_f)
+        y = b * b
+        beta = 1 - alpha
+        kappa = beta * (1 + alpha)
         q = 1 - kappa * y
         root = jnp.sqrt(q)
-        u = surface_values(coefficients, terms, degree, alpha, y)
+        u = _named(surfaces, surface_values(coefficients, terms, degree, alpha, y))
         if terms == 3:
             return (
                 kappa,
@@ -179,40 +200,47 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
         """Return κ, α², κb, q, √q, and m₅ if the form has it."""
-        alpha, b = jnp.asarray(alpha), jnp.cos(theta_f)
-        y, kappa, square = b * b, (1 - alpha) * (1 + alpha), alpha * alpha
+        alpha = jnp.asarray(alpha)
+        b = jnp.cos(theta_f)
+        y = b * b
+        square = alpha * alpha
+        beta = 1 - alpha
+        kappa = beta * (1 + alpha)
         q = 1 - kappa * y
         m = (kappa, square, kappa * b, q, jnp.sqrt(q))
         if degree < 0:
             return m
         (u,) = surface_values(coefficients, 1, degree, alpha, y)
-        return (*m, u * (1 - alpha) * square)
+        return (*m, u * beta * square)
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        # notation: c, a, S, T, E and λ as above; the cubic is λ³ + (E + 2T) λ² + wλ − E, with
-        # w = T² − S².
+        # notation: c, a, S, T, E and e as above, root is λ; the cubic is λ³ + (E + 2T) λ² + wλ − E,
+        # with w = T² − S².
         c, a = cos_un, cos_ut
         sigma2 = 1 - m[0] * a * a
-        s, t, e = m[4] * jnp.sqrt(sigma2), m[2] * a, m[1] * c
-        square = s * s if degree >= 0 or not steps else None
-        g = jnp.maximum(s, t) if degree < 0 else jnp.sqrt(square + t * t + m[5] * c)
-        part = e / (s + g + e)
-        h = (s - t) * (0.5 - 0.5 * part)
-        root = jnp.maximum(h + jnp.sqrt(h * h + part), LEAST)
+        S = m[4] * jnp.sqrt(sigma2)
+        T = m[2] * a
+        E = m[1] * c
+        square = S * S if degree >= 0 or not steps else None
+        g = jnp.maximum(S, T) if degree < 0 else jnp.sqrt(square + T * T + m[5] * c)
+        e = E / (S + g + E)
+        h = (S - T) * (0.5 - 0.5 * e)
+        root = jnp.maximum(h + jnp.sqrt(h * h + e), LEAST)
         ellipse = None
         if steps:
-            b, w = e + t + t, (1 - sigma2) - m[3]
+            b = E + T + T
+            w = (1 - sigma2) - m[3]
             for _ in range(steps):
                 y = root + b
                 z = y * root + w
                 slope = jnp.maximum((y + root) * root + z, LEAST)
-                root = jnp.maximum(root - (z * root - e) / slope, LEAST)
+                root = jnp.maximum(root - (z * root - E) / slope, LEAST)
             ellipse = 3 * root + (b + b) + w / root
         else:
-            top = root + t
-            both = top + e
+            top = root + T
+            both = top + E
             ellipse = (top * top - square) / root + (both + both)
-        return 1 - jnp.sqrt((root + c) * (root + e / sigma2)) / jnp.maximum(ellipse, LEAST)
+        return 1 - jnp.sqrt((root + c) * (root + E / sigma2)) / jnp.maximum(ellipse, LEAST)
 
     def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
         """Return the radicand in g, if g has one. docs/range.md proves that no more is needed."""
@@ -235,6 +263,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         material=material,
         along=along,
         proofs=DirectionProofs(along, margins),
+        notation=", S = m4 √(1 - m0 a²), T = m2 a, E = m1 c, λ = root",
     )
 
 

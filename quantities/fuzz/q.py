@@ -9,11 +9,14 @@ from fitting.proofs.largest_error import ErrorCode, difference_code
 from integrals.fuzz.q import average_penetration
 from integrals.special.exponential import ein
 from programs.functions import Function, Parameter, function
-from quantities.calling_convention import Argument, CallingConvention
+from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.q_forms import AXES, LEAST_DENSITY, STRUCTURES, candidates, pole_q
 from quantities.fuzz.supplement import QUADRATIC_Q
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+
+# From this density on, exp(−d) is below the rounding of float64.
+_OPAQUE = 64.0
 
 
 def _error_code(fitted: FittedForm) -> ErrorCode:
@@ -34,9 +37,13 @@ def _error_code(fitted: FittedForm) -> ErrorCode:
 
 def exact_functions(_: str) -> tuple[Function, ...]:
     """Return the closed form as a function of the density."""
+
+    def value(density):
+        return clamped(average_penetration(clamped(density, 0.0, _OPAQUE)), 0.0, 1.0)
+
     parameters = (Parameter("density", (AXES[0].lower, AXES[0].upper)),)
     summary = "Q in closed form, without coefficients."
-    return (function("FuzzAveragePenetrationExact", parameters, average_penetration, summary),)
+    return (function("FuzzAveragePenetrationExact", parameters, value, summary),)
 
 
 Q = Problem(
@@ -50,8 +57,8 @@ Q = Problem(
     candidates=lambda _: candidates(),
     calling=CallingConvention(
         name="FuzzAveragePenetration",
-        summary="Q ({equation}); clamps density from above.",
-        arguments=(Argument("density", "density", clamp="above", local="density"),),
+        summary="Q{equation}; clamps to the domain.",
+        arguments=(Argument("density", "density", clamp="both", local="density"),),
         remark="density is thickness over mean free path",
     ),
     closed_form=average_penetration,

@@ -20,7 +20,7 @@ from shading.types import Scalar
 AXES = restricted(Q.axes, density=(0.0, 0.5))
 # The logarithm is that of max(d, this), so that it is finite at d = 0. Its factor d² makes the
 # difference far smaller than rounding.
-LEAST_DENSITY = 1e-30
+LEAST_DENSITY = 1e-7
 
 # The equation of each structure. r is the polynomial with the poles, a function of d or of √d.
 STRUCTURES = {

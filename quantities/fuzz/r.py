@@ -35,10 +35,10 @@ R = Problem(
     candidates=lambda lower: candidates(lower["alpha"]),
     calling=CallingConvention(
         name="FuzzAveragePs",
-        summary="R ({equation}); clamps to the domain.",
+        summary="R{equation}; clamps to the domain.",
         arguments=(
             Argument("alpha", "alpha", clamp="both", local="alpha"),
-            Argument("theta_f", "thetaF", clamp="both", local="theta_f"),
+            Argument("theta_f", "thetaF", clamp="both", local="theta_f", cosine="NdotT"),
         ),
         remark="alpha, the roughness, is the projected area along the fibre, thetaF its polar "
         "angle",

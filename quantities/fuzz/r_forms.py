@@ -47,10 +47,13 @@ def monomial_r(
         alpha = jnp.asarray(alpha)
         b = 1 - alpha
         g = jnp.cos(theta_f)
-        z, y = z_of(alpha, b), g * g
+        z = z_of(alpha, b)
+        y = g * g
         above = dict(zip(numerator, c[:split], strict=True))
         below = {(0, 0): 1.0, **dict(zip(denominator, c[split:], strict=True))}
-        return 0.5 + z * horner(above, z, y) / horner(below, z, y)
+        N = horner(above, z, y)
+        D = horner(below, z, y)
+        return 0.5 + z * N / D
 
     sets = {"N": numerator, "D": denominator}
     return Form(

@@ -3,7 +3,7 @@
 import integrals
 from integrals.fuzz.velvet import normalisation
 from programs.functions import Function, Parameter, function
-from quantities.calling_convention import Argument, CallingConvention
+from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.fuzz.velvet_form import AXES, CONSERVATIVE_NORM
 from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
 
@@ -12,9 +12,13 @@ _REMARK = "asymmetry is k of Schlick's lobe p_Schlick(k, -sin(t, h)), whose fact
 
 def exact_functions(_: str) -> tuple[Function, ...]:
     """Return the closed form as a function of the asymmetry."""
+
+    def value(asymmetry):
+        return normalisation(clamped(asymmetry, -1.0, 0.0))
+
     parameters = (Parameter("asymmetry", (AXES[0].lower, AXES[0].upper)),)
     summary = "r(k) in closed form, without coefficients."
-    return (function("FuzzVelvetNormExact", parameters, normalisation, summary),)
+    return (function("FuzzVelvetNormExact", parameters, value, summary),)
 
 
 VELVET = Problem(

@@ -34,7 +34,7 @@ def cost(
     """
     require_tables([table])
     from coefficients.catalogue import resolve
-    from coefficients.exported_code import closed_form_beside, costs
+    from coefficients.code_header import closed_form_beside, costs
     from programs import KINDS, measure_throughput
     from shadefit.commands.table_records import entry_fields
     from shadefit.records import CostedTable, CostOutput

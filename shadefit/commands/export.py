@@ -1,4 +1,4 @@
-"""`shadefit export`: write a table as JSON, or as shader code with a header that states errors."""
+"""`shadefit export`: write a table as JSON, or tables as shader code whose header states errors."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -8,19 +8,21 @@ import typer
 from shadefit.commands.names import require_tables
 from shadefit.completion import complete_language, complete_shader
 
+_JSON = "json"
+
 
 def export(
-    table: Annotated[
-        str,
+    tables: Annotated[
+        list[str],
         typer.Argument(
-            help="Name or path of a table; with --to also exact/NAME, a closed form.",
+            help="Names or paths of tables; for code also exact/NAME, a closed form.",
             autocompletion=complete_shader,
         ),
     ],
     to: Annotated[
         str | None,
         typer.Option(
-            help="Language of the code; without this option JSON is written.",
+            help="Language of the code, or json; by default that of --output's suffix, or json.",
             metavar="LANG",
             autocompletion=complete_language,
         ),
@@ -31,7 +33,10 @@ def export(
     ] = None,
     precision: Annotated[
         str | None,
-        typer.Option(help="half, float or double; by default float, for JavaScript double."),
+        typer.Option(
+            help="half, float or double; by default float, for JavaScript double. In glsl-es, half "
+            "is mediump and float is highp."
+        ),
     ] = None,
     name: Annotated[
         str | None,
@@ -41,37 +46,119 @@ def export(
         Literal["inline", "table"] | None,
         typer.Option(help="Where the code has its constants; by default inline."),
     ] = None,
+    interface: Annotated[
+        Literal["listing", "material"] | None,
+        typer.Option(
+            help="listing: the functions of the paper, with arrays that differ between tables. "
+            "material: FuzzPsMaterial returns a structure and FuzzPs takes it, the same for every "
+            "table of P_s and its closed form. By default listing."
+        ),
+    ] = None,
+    layout: Annotated[
+        Literal["array", "struct", "vec4"] | None,
+        typer.Option(
+            help="Content of that structure: an array, single numbers, or vectors of four for a "
+            "constant buffer; by default array."
+        ),
+    ] = None,
+    cosines: Annotated[
+        bool,
+        typer.Option("--cosines", help="Take NdotT, the cosine, in place of the angle thetaF."),
+    ] = False,
+    prefix: Annotated[
+        str | None, typer.Option(help="What names of functions and structures begin with.")
+    ] = None,
+    namespace: Annotated[
+        str | None, typer.Option(help="Namespace of the functions (cpp, cuda, hlsl, metal, slang).")
+    ] = None,
+    bundle: Annotated[
+        str | None,
+        typer.Option(
+            help="shadertoy, unity or unreal: a file for this program, with its entry points, in "
+            "its language, and with --interface material.",
+            metavar="HOST",
+        ),
+    ] = None,
 ) -> None:
-    """Write a table as JSON, or as code in a language.
+    """Write a table as JSON, or tables as code in a language.
 
     The code is run if its compiler is installed. Its header states the error
     that was measured.
     """
-    require_tables([table])
-    if to is not None:
-        from programs.languages import language
-
-        language(to)
+    require_tables(tables)
+    from coefficients.bundles import language_of_bundle
     from coefficients.catalogue import resolve
+    from coefficients.code_options import CodeOptions
     from coefficients.exported_code import source_file
     from coefficients.files import require_writable_file, write_whole
     from coefficients.table import serialise
     from shadefit.encoding import shown_json
 
+    if bundle is not None:
+        to, interface = to or language_of_bundle(bundle), interface or "material"
+    key = _language(to, output)
     if output is not None:
         require_writable_file(output)
-    if to is None:
-        for option, given in (
-            ("--precision", precision),
-            ("--name", name),
-            ("--constants", constants),
-        ):
+    for_code = {
+        "precision": precision,
+        "name": name,
+        "constants": constants,
+        "interface": interface,
+        "layout": layout,
+        "cosines": cosines or None,
+        "prefix": prefix,
+        "namespace": namespace,
+        "bundle": bundle,
+    }
+    if key == _JSON:
+        for option, given in for_code.items():
             if given is not None:
-                raise ValueError(f"{option} {given!r} is for code: allowed with --to LANG")
-        text = serialise(resolve(table).require_table())
+                raise ValueError(f"--{option} {given!r} is for code: allowed with --to LANG")
+        if len(tables) > 1:
+            raise ValueError(
+                f"{len(tables)} tables are for code: JSON is of one; allowed: --to LANG"
+            )
+        text = serialise(resolve(tables[0]).require_table())
     else:
-        text = source_file(resolve(table), to, precision, name, constants or "inline")
+        options = CodeOptions(
+            interface=interface or "listing",
+            layout=layout or "array",
+            cosines=cosines,
+            prefix=prefix or "",
+            namespace=namespace,
+            bundle=bundle,
+        )
+        entries = [resolve(each) for each in tables]
+        text = source_file(entries, key, precision, name, constants or "inline", options)
     if output is None:
         print(text if to else shown_json(text), end="")
     else:
         write_whole(output, text)
+
+
+def _language(to: str | None, output: Path | None) -> str:
+    """Return the key of the language, or 'json'.
+
+    Raises ValueError for a name of a file that does not say what is to be written to it, or that
+    contradicts the language.
+    """
+    from programs.languages import language, language_of_file, require_suffix
+
+    file = "" if output is None else output.name
+    if to is None:
+        if output is None or file.lower().endswith(".json"):
+            return _JSON
+        found = language_of_file(file)
+        if found is None:
+            raise ValueError(
+                f"{file!r} has no suffix that says what to write: allowed are that of a language, "
+                ".json, or --to LANG"
+            )
+        return found
+    if to.lower() == _JSON:
+        return _JSON
+    key = language(to).key
+    if file.lower().endswith(".json"):
+        raise ValueError(f"{file!r} is no name for code: allowed is .json without --to {to}")
+    require_suffix(file, key)
+    return key

@@ -231,6 +231,11 @@ def published_largest(quantity: str) -> float:
     return judge(resolve(f"published/{quantity}").require_fitted()).largest
 
 
+# The operations of clamps that keep values finite and within the codomain outside the domain: of
+# density from below; of v·n; of u·n, u·t and P_s. The form with one root also clamps its radicand.
+SAFETY = {"q": 1, "g": 3, "r": 0, "ps": 6}
+
+
 def of(quantity: str) -> list[str]:
     return [name for name in BEST if resolve(name).problem.name == quantity]
 
@@ -266,7 +271,11 @@ def test_readme_states_by_what_factor_the_largest_error_is_smaller(quantity):
 def test_a_table_is_named_by_its_quantity_and_its_cost(name):
     entry = resolve(name)
     assert name == f"best/{entry.require_table().name}"
-    assert name.split("-")[:2] == [f"best/{entry.problem.name}", str(operations(name))]
+    quantity, number = name.removeprefix("best/").split("-")[:2]
+    # The number leaves out the clamps that only keep values finite outside the domain.
+    assert quantity == entry.problem.name
+    safety = SAFETY[quantity] + (entry.require_fitted().form.name == "one-root-ps")
+    assert int(number) == operations(name) - safety
 
 
 @pytest.mark.parametrize("quantity", ["q", "g", "r", "ps"])
@@ -279,12 +288,12 @@ def test_one_table_is_better_for_no_more_operations_and_one_ten_times_better(qua
 @pytest.mark.parametrize(
     ("quantity", "budget", "most"),
     [
-        ("q", 9, 2e-5),
-        ("g", 13, 5e-3),
+        ("q", 10, 2e-5),
+        ("g", 16, 5e-3),
         ("r", 36, 1e-4),
-        ("ps", 15, 0.067),
-        ("ps", 25, 0.0155),
-        ("ps", 40, 2.5e-3),
+        ("ps", 19, 0.067),
+        ("ps", 31, 0.0155),
+        ("ps", 46, 2.5e-3),
     ],
 )
 def test_an_error_is_reached_within_a_budget(quantity, budget, most):

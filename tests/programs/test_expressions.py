@@ -240,7 +240,7 @@ def test_a_value_keeps_the_name_that_checkpoint_name_gives_it(tree):
     program, rows = trace(named), points(16)
     assert [step.hint for step in program.steps].count("given_name") == 1
     # The value is used twice, so that printed code holds it in a variable.
-    assert re.search(r"\bgiven_name = ", write_source(named, "python", "double"))
+    assert re.search(r"\bgivenName = ", write_source(named, "python", "double"))
     np.testing.assert_allclose(
         evaluate(program, rows), in_jax(named, rows), rtol=0, atol=4 * TOLERANCE["double"]
     )

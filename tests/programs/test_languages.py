@@ -6,7 +6,15 @@ import sys
 import pytest
 
 import programs
-from programs.languages import LANGUAGES, PRECISIONS, language, precision_of
+from programs.languages import (
+    LANGUAGES,
+    PRECISIONS,
+    language,
+    language_of_file,
+    precision_of,
+    require_suffix,
+)
+from programs.languages.registry import ALIASES, SUFFIXES
 from programs.toolchains import TOOLCHAINS
 
 
@@ -28,6 +36,47 @@ def test_a_language_is_found_by_its_key():
     assert language("hlsl").name == "HLSL"
     with pytest.raises(ValueError, match="target 'klingon' is unknown; allowed: c, cpp, hlsl, "):
         language("klingon")
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("c++", "cpp"), ("C++", "cpp"), ("GLSL", "glsl"), ("Js", "javascript"), ("py", "python"),
+        ("webgl", "glsl-es"), ("ESSL", "glsl-es"), ("MSL", "metal"), ("cu", "cuda"),
+    ],
+)  # fmt: skip
+def test_a_language_has_other_names_in_any_case(name, key):
+    assert language(name).key == key
+    assert precision_of(name, None) == precision_of(key, None)
+
+
+def test_aliases_and_suffixes_are_those_of_languages():
+    assert set(ALIASES.values()) <= set(LANGUAGES)
+    assert not set(ALIASES) & set(LANGUAGES)
+    assert all(set(keys) <= set(LANGUAGES) for keys in SUFFIXES.values())
+    for key, spelled in LANGUAGES.items():
+        assert key in SUFFIXES[spelled.extension]
+
+
+@pytest.mark.parametrize(
+    ("file", "key"),
+    [
+        ("fuzz.hlsl", "hlsl"), ("Fuzz.HLSLI", "hlsl"), ("a.b.ush", "hlsl"), ("x.frag", "glsl"),
+        ("x.hpp", "cpp"), ("x.c", "c"), ("x.mjs", "javascript"), ("x.txt", None), ("hlsl", None),
+    ],
+)  # fmt: skip
+def test_the_suffix_of_a_file_names_a_language(file, key):
+    assert language_of_file(file) == key
+
+
+def test_a_suffix_of_several_languages_names_none():
+    with pytest.raises(ValueError, match=r"\.h is the suffix of several languages; allowed with"):
+        language_of_file("fuzz.h")
+    for key in ("c", "cpp", "metal"):
+        require_suffix("fuzz.h", key)
+    require_suffix("fuzz.inc", "wgsl")
+    with pytest.raises(ValueError, match=r"'fuzz\.hlsl' is no name for GLSL; allowed .* hlsl"):
+        require_suffix("fuzz.hlsl", "glsl")
 
 
 def test_the_default_precision_is_float_where_there_is_one():

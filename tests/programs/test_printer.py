@@ -73,7 +73,7 @@ GOLDEN = """\
 
 // An example.
 // alpha in [0, 1], thetaF in [0, 1].
-float Example(float alpha, float thetaF)
+static inline float Example(float alpha, float thetaF)
 {
     const float beta = 1.0f - alpha;
     const float beta2 = beta * beta;
@@ -137,12 +137,12 @@ def test_only_needed_parentheses_are_printed(expected):
 
 SIGNATURES = {
     "c": (
-        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float c[6])",
-        "float FuzzPs(const float c[6], float NdotU, float TdotU)",
+        "static inline void CalcFuzzPsCoeffs(float alpha, float thetaF, float c[6])",
+        "static inline float FuzzPs(const float c[6], float NdotU, float TdotU)",
     ),
     "cpp": (
-        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
-        "float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
+        "inline void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "inline float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
     ),
     "hlsl": (
         "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
@@ -152,13 +152,17 @@ SIGNATURES = {
         "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
         "float FuzzPs(in float c[6], float NdotU, float TdotU)",
     ),
+    "glsl-es": (
+        "void CalcFuzzPsCoeffs(highp float alpha, highp float thetaF, out highp float c[6])",
+        "highp float FuzzPs(in highp float c[6], highp float NdotU, highp float TdotU)",
+    ),
     "slang": (
         "void CalcFuzzPsCoeffs(float alpha, float thetaF, out float c[6])",
         "float FuzzPs(in float c[6], float NdotU, float TdotU)",
     ),
     "metal": (
-        "void CalcFuzzPsCoeffs(float alpha, float thetaF, thread float (&c)[6])",
-        "float FuzzPs(thread const float (&c)[6], float NdotU, float TdotU)",
+        "inline void CalcFuzzPsCoeffs(float alpha, float thetaF, thread float (&c)[6])",
+        "inline float FuzzPs(thread const float (&c)[6], float NdotU, float TdotU)",
     ),
     "wgsl": (
         "fn CalcFuzzPsCoeffs(alpha: f32, thetaF: f32, c: ptr<function, array<f32, 6>>)",
@@ -169,8 +173,9 @@ SIGNATURES = {
         "float FuzzPs(float c[6], float NdotU, float TdotU)",
     ),
     "cuda": (
-        "__host__ __device__ void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
-        "__host__ __device__ float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
+        "__host__ __device__ inline "
+        "void CalcFuzzPsCoeffs(float alpha, float thetaF, float (&c)[6])",
+        "__host__ __device__ inline float FuzzPs(const float (&c)[6], float NdotU, float TdotU)",
     ),
     "python": ("def CalcFuzzPsCoeffs(alpha, thetaF):", "def FuzzPs(c, NdotU, TdotU):"),
     "javascript": (
@@ -356,11 +361,11 @@ def test_unnamed_values_are_named_after_their_operands():
     assert found == {
         "oneMinusAlpha": "1.0f - alpha",
         "alpha2": "alpha * alpha",
-        "t": "alpha * b",
+        "product": "alpha * b",
         "b3": "b * b * b",
         "sqrtB": "sqrtf(b)",
         "twiceB": "b + b",
-        "t_2": "b - alpha",
+        "difference": "b - alpha",
     }
 
 
@@ -371,10 +376,38 @@ def test_a_clamped_argument_gets_a_name_of_its_own():
 
     lines = write_source(of_scalars(call, "alpha"), "c").splitlines()
     assert [line.strip() for line in lines[6:-1]] == [
-        "const float alphaAtLeast = 0.15f > alpha ? 0.15f : alpha;",
-        "const float alphaClamped = 1.0f < alphaAtLeast ? 1.0f : alphaAtLeast;",
+        "const float alphaAtLeast = alpha > 0.15f ? alpha : 0.15f;",
+        "const float alphaClamped = alphaAtLeast < 1.0f ? alphaAtLeast : 1.0f;",
         "return alphaClamped * alphaClamped;",
     ]
+
+
+@pytest.mark.parametrize(
+    ("language", "unit", "other"),
+    [
+        ("hlsl", "saturate(x)", "clamp(x, 0.25f, 0.75f)"),
+        ("wgsl", "saturate(x)", "clamp(x, 0.25f, 0.75f)"),
+        ("metal", "metal::saturate(x)", "metal::clamp(x, 0.25f, 0.75f)"),
+        ("glsl", "clamp(x, 0.0, 1.0)", "clamp(x, 0.25, 0.75)"),
+        ("osl", "clamp(x, 0.0, 1.0)", "clamp(x, 0.25, 0.75)"),
+        ("cuda", "fminf(fmaxf(x, 0.0f), 1.0f)", "fmaxf(fminf(x, 0.75f), 0.25f)"),
+    ],
+)
+def test_a_clamp_is_written_by_the_languages_own_function(language, unit, other):
+    def call(x):
+        return jnp.clip(x, 0.0, 1.0) / jnp.maximum(jnp.minimum(x, 0.75), 0.25)
+
+    assert f"return {unit} / {other};" in write_source(of_scalars(call, "x"), language)
+
+
+def test_a_bound_that_is_not_a_constant_is_no_clamp():
+    def call(x, y):
+        return jnp.minimum(jnp.maximum(x, 0.0), y) + jnp.minimum(jnp.maximum(x, 1.0), 0.5)
+
+    source = write_source(of_scalars(call, "x y"), "hlsl")
+    assert "min(max(x, 0.0f), y)" in source
+    # The ends are not in order.
+    assert "min(max(x, 1.0f), 0.5f)" in source
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,7 @@ CODE = {
     "cpp": C_LIKE,
     "hlsl": C_LIKE,
     "glsl": C_LIKE,
+    "glsl-es": PLAIN,
     "slang": C_LIKE,
     "metal": f"#include <metal_stdlib>\nusing namespace metal;\n{C_LIKE}",
     "wgsl": "fn Ratio(x: f32) -> f32 { return (1.0 + 0.5 * x) / (2.0 + x * x); }\n",

@@ -48,6 +48,7 @@ SPELLED = {
     "c": {"half": "_Float16", "float": "float", "double": "double"},
     "cpp": {"half": "_Float16", "float": "float", "double": "double"},
     "glsl": {"half": "float16_t", "float": "float", "double": "double"},
+    "glsl-es": {"float": "highp float"},
     "hlsl": {"half": "half", "float": "float", "double": "double"},
     "slang": {"half": "half", "float": "float", "double": "double"},
     "metal": {"half": "half", "float": "float"},
@@ -62,6 +63,7 @@ OUT = {
     "c": "{T} c[6]",
     "cpp": "{T} (&c)[6]",
     "glsl": "out {T} c[6]",
+    "glsl-es": "out {T} c[6]",
     "hlsl": "out {T} c[6]",
     "slang": "out {T} c[6]",
     "metal": "thread {T} (&c)[6]",
@@ -72,6 +74,7 @@ IN = {
     "c": "const {T} c[6]",
     "cpp": "const {T} (&c)[6]",
     "glsl": "in {T} c[6]",
+    "glsl-es": "in {T} c[6]",
     "hlsl": "in {T} c[6]",
     "slang": "in {T} c[6]",
     "metal": "thread const {T} (&c)[6]",
@@ -96,7 +99,7 @@ def source(language, function, precision):
 
 
 def _literal(language, kind, value):
-    if language in ("osl", "wgsl", "javascript") or kind in ("double", "np.float64"):
+    if language in ("osl", "wgsl", "javascript", "glsl-es") or kind in ("double", "np.float64"):
         return repr(value)
     if kind == "float":
         return f"{value!r}f"
@@ -165,7 +168,7 @@ def reference(function, points, kind):
 # Blender's, may fuse a product and a sum. That changes these sums, of at most six terms below 1,
 # by a few units in the last place.
 FUSED = 6.0
-FUSING = ("glsl", "hlsl", "slang", "wgsl", "osl")
+FUSING = ("glsl", "glsl-es", "hlsl", "slang", "wgsl", "osl")
 
 
 def sample_points(function, precision, rows=2000):

@@ -10,17 +10,9 @@ from programs.functions import Parameter, function
 from programs.languages import LANGUAGES, precision_of
 from programs.printing.printer import write_source
 from programs.toolchains import ToolchainError, toolchain, verification
+from programs.toolchains.difference import Difference, difference, rounded_up, text_of
 from programs.toolchains.interface import Toolchain
-from programs.toolchains.verification import (
-    CallSequence,
-    Difference,
-    Trial,
-    check,
-    corners,
-    difference,
-    run_code,
-    text_of,
-)
+from programs.toolchains.verification import CallSequence, Trial, check, corners, run_code
 
 UNIT = (0.0, 1.0)
 WAVE = function(
@@ -307,5 +299,27 @@ def test_a_difference_is_within_another_in_every_field(larger, within):
 
 
 def test_a_difference_is_written_with_two_digits():
-    assert text_of(Difference(0.0123, 4.56e-7)) == "rms 4.6e-07, largest 1.2e-02"
+    assert text_of(Difference(0.0123, 4.56e-7)) == "rms 4.6e-07, largest 1.3e-02"
     assert text_of(Difference(1.0, 0.5, 3)) == "rms 5.0e-01, largest 1.0e+00, 3 values not finite"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.13323, "1.4e-01"), (0.13, "1.3e-01"), (0.991, "1.0e+00"), (0.0, "0.0e+00"),
+        (2.00001e-7, "2.1e-07"), (9.95e-5, "1.0e-04"), (5e-5, "5.0e-05"), (12.01, "1.3e+01"),
+    ],
+)  # fmt: skip
+def test_stated_errors_are_rounded_up(value, text):
+    assert rounded_up(value) == text
+
+
+def test_half_is_good_enough_if_rounding_moves_no_value_far():
+    coarse = function("Coarse", [Parameter("x", (0.0, 1.0))], lambda x: (x + 300.0) - 300.0)
+    points = np.linspace(0, 1, 65)[:, None]
+    result = check(Trial(CallSequence((coarse,), lambda rows: (rows,)), points, "half"), "python")
+    assert result.status == "not good enough"
+    assert "allowed: rms 2.0e-02, largest 2.0e-02" in result.reason
+    fine = function("Fine", [Parameter("x", (0.0, 1.0))], lambda x: (x + 1.0) * 0.25)
+    calls = CallSequence((fine,), lambda rows: (rows,))
+    assert check(Trial(calls, points, "half"), "python").status == "passed"

@@ -19,6 +19,7 @@ NAMES_IN_PRINT = {
     "r": ["FuzzAveragePs"],
     "velvet": ["FuzzVelvetNorm"],
 }
+NAMES_OF_G = ("published/g", "g", *(f"best/g-{cost}" for cost in (9, 10, 13, 16, 17, 19)))
 PUBLISHED = ("published/ps", "published/g", "published/q", "published/r")
 # The longest sum of a listing: each of its terms is rounded in its powers, its product and the
 # partial sums after it. Two orders of the same sum are each within this of the exact one.
@@ -101,7 +102,9 @@ def test_calc_fuzz_ps_coeffs_is_the_listing_with_rows_3_and_4_exchanged(name):
     n, t = light.T
     terms = given * np.stack([np.ones_like(n), n, t, n * n, n * t, t * t], 1)
     fraction = in_c(value, np.concatenate([given, light], 1))[:, 0]
-    assert (np.abs(fraction - terms.sum(1)) <= 8 * EPS * np.abs(terms).sum(1)).all()
+    # The code clamps it to [0, 1], which the listing does not.
+    expected = np.clip(terms.sum(1), 0, 1)
+    assert (np.abs(fraction - expected) <= 8 * EPS * np.abs(terms).sum(1)).all()
 
 
 def test_g_q_and_r_are_the_listings():
@@ -139,12 +142,13 @@ def test_g_q_and_r_are_the_listings():
                [[0.15, 0.5], [1.0, 0.5], [0.5, 0.1], [0.5, np.pi / 2]]),
         ("r", [[-1.0, 0.5], [3.0, 0.5], [0.5, -2.0], [0.5, 9.0]],
               [[0.15, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, np.pi / 2]]),
-        ("g", [[0.3, 7.0]], [[0.3, 0.5]]),
-        ("q", [[7.0]], [[0.5]]),
+        ("g", [[0.3, 7.0], [0.3, -1.0], [-0.1, 0.2], [0.0, 0.2], [7.0, 0.2]],
+              [[0.3, 0.5], [0.3, 0.0], [0.001, 0.2], [0.001, 0.2], [1.0, 0.2]]),
+        ("q", [[7.0], [-0.1]], [[0.5], [0.0]]),
         ("velvet", [[-1.0], [0.5]], [[-0.95], [0.0]]),
     ],
 )  # fmt: skip
-def test_arguments_are_clamped_as_the_listings_clamp_them(name, outside, inside):
+def test_arguments_are_clamped_to_the_domain(name, outside, inside):
     program = trace(resolve(name).functions()[0])
     np.testing.assert_array_equal(
         evaluate(program, np.array(outside)), evaluate(program, np.array(inside))
@@ -153,7 +157,7 @@ def test_arguments_are_clamped_as_the_listings_clamp_them(name, outside, inside)
 
 @pytest.mark.parametrize(
     ("name", "clamped"),
-    [("ps", [1, 1]), ("best/ps-11", [1, 1]), ("g", [0, 1]), ("q", 1), ("r", [1, 1]), ("velvet", 1)],
+    [("ps", [1, 1]), ("best/ps-11", [1, 1]), ("g", [1, 1]), ("q", 1), ("r", [1, 1]), ("velvet", 1)],
 )
 def test_a_form_on_another_domain_is_clamped_to_its_own(name, clamped):
     entry = resolve(name)
@@ -168,12 +172,33 @@ def test_a_form_on_another_domain_is_clamped_to_its_own(name, clamped):
     )
 
 
-@pytest.mark.parametrize("name", ["g", "q"])
-def test_density_is_not_clamped_from_below(name):
+@pytest.mark.parametrize("name", [*NAMES_OF_G, *(f"{each}@zero" for each in NAMES_OF_G)])
+def test_a_layer_that_is_absent_scatters_nothing(name):
+    """G(0, ν) = 0 for every ν, although the forms' domain begins at d = 0.001."""
+    name, _, zero = name.partition("@")
     program = trace(resolve(name).functions()[0])
-    width = len(program.inputs)
-    low = evaluate(program, np.full((1, width), -0.1))
-    assert low[0, 0] != evaluate(program, np.array([[-0.1] * (width - 1) + [0.0]]))[0, 0]
+    nu = np.array([0.0, -0.0, -1.0]) if zero else np.linspace(0.001, 1, 65)
+    assert (evaluate(program, np.stack([nu, 0 * nu], 1)) == 0).all()
+    # Between 0 and the domain the values rise, and stay below that at the domain's end.
+    density = np.linspace(0, 0.001, 65)
+    for cosine in (0.001, 0.01, 1.0):
+        values = evaluate(program, np.stack([np.full(65, cosine), density], 1))[:, 0]
+        assert (np.diff(values) > 0).all()
+
+
+def test_a_second_functions_cosines_are_clamped_and_so_is_its_value():
+    calc, value = (trace(each) for each in resolve("best/ps-40").functions())
+    material = evaluate(calc, np.array([[0.3, 0.7]]))[0]
+
+    def at(*cosines):
+        return evaluate(value, np.array([[*material, *cosines]]))[0, 0]
+
+    assert at(-0.3, 0.2) == at(0.0, 0.2)
+    assert at(1.5, 0.2) == at(1.0, 0.2)
+    assert at(0.5, -7.0) == at(0.5, -1.0)
+    assert at(0.5, 1e9) == at(0.5, 1.0)
+    # No light is along n and −t if t is not horizontal.
+    assert at(1.0, -1.0) == 0.0
 
 
 def test_arguments_come_in_the_order_of_the_function_not_of_the_form():
@@ -213,7 +238,7 @@ def test_a_convention_without_clamps_adds_no_steps():
     calling = entry.problem.calling
     bare = replace(calling, arguments=(replace(calling.arguments[0], clamp="none"),))
     (clamped,), (free,) = (each.functions(entry.require_fitted()) for each in (calling, bare))
-    assert len(trace(clamped).steps) == len(trace(free).steps) + 1
+    assert len(trace(clamped).steps) == len(trace(free).steps) + 2
 
 
 @pytest.mark.parametrize(
@@ -224,9 +249,9 @@ def test_the_summary_says_which_equation(quantity, said):
     assert said in function.summary
 
 
-def test_the_summary_of_a_familys_form_says_its_family():
+def test_the_summary_of_a_familys_form_says_nothing_of_internal_names():
     (function,) = resolve("best/g-9").functions()
-    assert "G (tied-g)" in function.summary
+    assert function.summary.startswith("G; clamps")
 
 
 def test_functions_may_have_another_name():

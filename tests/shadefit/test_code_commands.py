@@ -1,9 +1,11 @@
 """The commands about exported code: `export --to`, `verify` and `cost`."""
 
+import functools
 import json
 
 import pytest
 
+from coefficients import exported_code
 from programs import PRECISIONS, ToolchainError, toolchain
 from programs.toolchains import verification
 from programs.toolchains.interface import Toolchain
@@ -107,3 +109,54 @@ def test_cost_measures_throughput(capsys):
     (row,) = json.loads(out)["tables"][0]["functions"]
     assert row["throughput"]["compiled"] > 0 and row["throughput"]["jax"] > 0
     assert "million" in run(capsys, "cost", "q", "--throughput")[1]
+
+
+# Options of export
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["q", "-o", "x.h"], ".h is the suffix of several languages"),
+        (["q", "-o", "x.txt"], "'x.txt' has no suffix that says what to write"),
+        (["q", "--to", "glsl", "-o", "x.hlsl"], "'x.hlsl' is no name for GLSL"),
+        (["q", "--to", "c", "-o", "x.json"], "'x.json' is no name for code"),
+        (["q", "g"], "2 tables are for code"),
+        (["q", "--cosines"], "--cosines True is for code"),
+        (["q", "--to", "c", "--namespace", "x"], "namespace 'x' is not possible in C"),
+        (["q", "--to", "c", "--layout", "vec4"], "allowed with interface material"),
+        (["q", "--to", "c", "--interface", "material"], "q has one"),
+        (["q", "--to", "c", "--cosines"], "q takes no angle"),
+        (["ps", "best/ps-11", "--to", "c"], "occurs twice"),
+    ],
+)
+def test_options_that_contradict_each_other_are_one_line(
+    capsys, tmp_path, monkeypatch, arguments, said
+):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run(capsys, "export", *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1 and said in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_language_is_that_of_the_suffix(capsys, tmp_path):
+    path = tmp_path / "q.py"
+    assert run(capsys, "export", "q", "-o", str(path))[0] == 0
+    assert path.read_text() == run(capsys, "export", "q", "--to", "PY")[1]
+    table = tmp_path / "q.json"
+    assert run(capsys, "export", "q", "-o", str(table))[0] == 0
+    assert json.loads(table.read_text())["quantity"] == "q"
+    assert table.read_text() == run(capsys, "export", "q", "--to", "json")[1]
+
+
+def test_verify_says_that_half_is_not_good_enough(capsys, monkeypatch):
+    few = functools.partial(exported_code.trial_of, exponent=10)
+    monkeypatch.setattr(exported_code, "trial_of", few)
+    arguments = ["verify", "published/ps", "--to", "python", "--precision", "half"]
+    status, out, _ = run(capsys, *arguments, "--json")
+    assert status == 0
+    (row,) = json.loads(out)["tables"]["published/ps"]
+    assert row["status"] == "not good enough"
+    assert "allowed" in row["reason"]
+    assert "passed" not in run(capsys, *arguments)[1]

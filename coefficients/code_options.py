@@ -1,0 +1,119 @@
+"""How the exported code of an entry is to look: its interface, arguments and names."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from coefficients.catalogue import Entry
+from programs import Function, Record
+from programs.functions import Layout
+from quantities import Problem
+
+Interface = Literal["listing", "material"]
+
+
+@dataclass(frozen=True)
+class CodeOptions:
+    """Choices about exported code.
+
+    * `interface`: of a form of two stages. "listing" is that of the paper: Calc…Coeffs fills an
+      array of some length. "material" is the same for every table and for the closed form:
+      …Material returns a structure, which …(material, …) takes.
+    * `layout`: what this structure contains (`programs.Record`).
+    * `cosines`: whether arguments that are angles are replaced by their cosines.
+    * `prefix`: what the names of functions and structures begin with.
+    * `namespace`: that of all functions, in languages that have namespaces.
+    * `bundle`: a program that hosts shaders, whose entry points are added (`coefficients.bundles`).
+    """
+
+    interface: Interface = "listing"
+    layout: Layout = "array"
+    cosines: bool = False
+    prefix: str = ""
+    namespace: str | None = None
+    bundle: str | None = None
+
+
+DEFAULTS = CodeOptions()
+
+
+def shaped(entry: Entry, options: CodeOptions) -> Entry:
+    """Return an entry whose exported functions have the interface and arguments of `options`."""
+    calling, exact = entry.problem.calling, entry.problem.exact_code
+    record = None
+    if options.interface == "material" and calling.material is not None:
+        record = Record(calling.material, options.layout)
+    remark = calling.remark
+    if options.cosines and remark is not None:
+        for argument in calling.arguments:
+            if argument.cosine is not None:
+                remark = remark.replace(argument.name, f"acos({argument.cosine})")
+    calling = replace(calling, cosines=options.cosines, record=record, remark=remark)
+    if exact is not None and exact.staged is not None and record is not None:
+        staged, angles = exact.staged, calling
+
+        def arguments_at(points: np.ndarray) -> tuple[np.ndarray, ...]:
+            assert angles.columns is not None
+            shared = points[:, : len(angles.arguments)]
+            return angles.with_cosines(shared), angles.columns(points)
+
+        exact = replace(
+            exact,
+            functions=lambda precision: staged(precision, record, options.cosines),
+            arguments_at=arguments_at,
+        )
+    return replace(entry, problem=replace(entry.problem, calling=calling, exact_code=exact))
+
+
+def words_of(options: CodeOptions) -> list[str]:
+    """Return the words of a command line that stand for options, but for those by default."""
+    words = []
+    for name in ("interface", "layout", "prefix", "namespace", "bundle"):
+        value = getattr(options, name)
+        if value != getattr(DEFAULTS, name):
+            words += [f"--{name}", value]
+    return [*words, *(["--cosines"] if options.cosines else [])]
+
+
+def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
+    """Raise ValueError for options that change nothing about the code of these quantities."""
+    callings = [each.calling for each in problems]
+    names = ", ".join(dict.fromkeys(each.name for each in problems))
+    if options.layout != "array" and options.interface != "material":
+        raise ValueError(
+            f"layout {options.layout!r} is for structures: allowed with interface material"
+        )
+    one_call = options.bundle is None and all(each.material is None for each in callings)
+    if options.interface == "material" and one_call:
+        raise ValueError(f"interface 'material' is for tables of two functions: {names} has one")
+    if options.cosines and not any(a.cosine for each in callings for a in each.arguments):
+        raise ValueError(f"cosines stand for angles: {names} takes no angle")
+
+
+def prefixed(functions: tuple[Function, ...], prefix: str) -> tuple[Function, ...]:
+    """Put a prefix before the names of functions and of the structures that they use."""
+    if not prefix:
+        return functions
+    names = [each.name for each in functions]
+
+    def renamed(record: Record | None) -> Record | None:
+        return None if record is None else replace(record, name=prefix + record.name)
+
+    changed = []
+    for each in functions:
+        summary = each.summary
+        for name in names:
+            summary = summary.replace(f"{name} ", f"{prefix}{name} ")
+        parameters = tuple(replace(p, record=renamed(p.record)) for p in each.parameters)
+        changed.append(
+            replace(
+                each,
+                name=prefix + each.name,
+                summary=summary,
+                parameters=parameters,
+                record=renamed(each.record),
+            )
+        )
+    return tuple(changed)
