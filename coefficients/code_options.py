@@ -64,7 +64,7 @@ def shaped(entry: Entry, options: CodeOptions) -> Entry:
             functions=lambda precision: staged(precision, record, options.cosines),
             arguments_at=arguments_at,
         )
-    return replace(entry, problem=replace(entry.problem, calling=calling, exact_code=exact))
+    return replace(entry, problem=entry.problem.changed(calling=calling, exact_code=exact))
 
 
 def words_of(options: CodeOptions) -> list[str]:

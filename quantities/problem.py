@@ -1,5 +1,6 @@
 """`Problem`, the object that holds all about a quantity, and the objects that it consists of."""
 
+import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite, pi
@@ -243,6 +244,11 @@ class Problem:
     def single_forms(self) -> dict[str, Form]:
         """The forms that belong to no family, by name; the default one comes first."""
         return {form.name: form for form in self.forms}
+
+    def changed(self, **fields: Any) -> "Problem":
+        """Return the same quantity with some fields changed."""
+        own = {each.name: getattr(self, each.name) for each in dataclasses.fields(Problem)}
+        return Problem(**{**own, **fields})
 
     def tried(self, lower: Mapping[str, float]) -> Iterator[Form]:
         """Yield the forms that a search tries."""
