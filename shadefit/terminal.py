@@ -13,7 +13,7 @@ from shadefit.layout import RULE, laid_out, wrapped
 
 # Without a terminal there is no width to fit into: every table has its columns side by side.
 _UNLIMITED = 10_000
-# Notes are not wider than this, because long lines are hard to read.
+# In a terminal notes are not wider than this, because long lines are hard to read.
 _WIDEST_NOTE = 100
 
 
@@ -28,6 +28,7 @@ def print_table(
 ) -> None:
     """Print a table with a note below it, in the width of the terminal. No number is cut.
 
+    The lines of the note are kept, and wrapped in a terminal.
     The last `below` columns are on a line of their own under each row: 'at alpha 0.15'. In such a
     column an empty cell is left out.
     """
@@ -43,8 +44,9 @@ def print_table(
     if header:
         text.append((shown(RULE) * max(map(len, [*header, *lines])), "dim"))
     text += [(line, "") for line in lines]
-    if note:
-        text += [(line, "dim") for line in wrapped(shown(note), min(width, _WIDEST_NOTE))]
+    widest = min(width, _WIDEST_NOTE) if sys.stdout.isatty() else width
+    for each in note.splitlines():
+        text += [(line, "dim") for line in wrapped(shown(each), widest)]
     console = Console(highlight=False, markup=False, soft_wrap=True)
     for line, style in text:
         console.print(Text(line, style))

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 # Caption -> pages in the order of the navigation. A page that does not exist is left out.
 NAVIGATION = {
     "Guides": ("docs/own-integral", "docs/gallery", "docs/site/explorer"),
-    "Reference": ("docs/site/commands", "docs/json", "docs/site/api"),
+    "Reference": ("docs/site/commands", "docs/json", "docs/table-format", "docs/site/api"),
     "Mathematics": ("docs/closed-form", "docs/range", "docs/brdf"),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }
@@ -32,7 +32,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """Register the directive of the commands, and what is done before and after the build."""
     app.add_directive("shadefit-commands", Commands)
     app.connect("source-read", add_navigation)
-    app.connect("autodoc-process-docstring", escape_bars)
+    app.connect("autodoc-process-docstring", as_restructured_text)
     app.connect("autodoc-process-signature", shorten_defaults)
     app.connect("build-finished", write_start)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
@@ -48,13 +48,20 @@ def add_navigation(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{listed}\n```\n"
 
 
-def escape_bars(_app: Sphinx, _kind: str, _name: str, _object: Any, _how: Any, lines: list) -> None:
-    """Let |x| in a docstring stand for itself: in reStructuredText it is a substitution."""
+def as_restructured_text(
+    _app: Sphinx, _kind: str, _name: str, _object: Any, _how: Any, lines: list
+) -> None:
+    """Write what differs from Markdown in a docstring: |x|, which stands for itself, and code."""
     for index, line in enumerate(lines):
         # Every second part is code between backticks.
         parts = line.split("`")
         parts[::2] = [part.replace("|", r"\|") for part in parts[::2]]
         lines[index] = "`".join(parts)
+    # Indented by four after an empty line, it is code, as in Markdown.
+    for index in range(len(lines) - 1, 1, -1):
+        before, empty, line = lines[index - 2 : index + 1]
+        if line.startswith("    ") and not empty.strip() and not before.startswith(" "):
+            lines[index - 1 : index] = ["", "::", ""]
 
 
 def shorten_defaults(
