@@ -87,6 +87,10 @@ def export(
     """
     require_tables(tables)
     from coefficients.bundles import language_of_bundle
+
+    if bundle is not None:
+        to, interface = to or language_of_bundle(bundle), interface or "material"
+    key = _language(to, output)
     from coefficients.catalogue import resolve
     from coefficients.code_options import CodeOptions
     from coefficients.exported_code import source_file
@@ -94,9 +98,6 @@ def export(
     from coefficients.table import serialise
     from shadefit.encoding import shown_json
 
-    if bundle is not None:
-        to, interface = to or language_of_bundle(bundle), interface or "material"
-    key = _language(to, output)
     if output is not None:
         require_writable_file(output)
     for_code = {
@@ -131,7 +132,7 @@ def export(
         entries = [resolve(each) for each in tables]
         text = source_file(entries, key, precision, name, constants or "inline", options)
     if output is None:
-        print(text if to else shown_json(text), end="")
+        print(shown_json(text) if key == _JSON else text, end="")
     else:
         write_whole(output, text)
 

@@ -44,8 +44,12 @@ def test_the_documentation_names_every_command_and_field():
     for name, definition in definitions.items():
         for field in definition["properties"]:
             assert f"`{field}`" in text, (name, field)
-    commands = [name.removesuffix("Output").lower() for name in definitions if "Output" in name]
-    assert len(commands) == 9
+    commands = [
+        definition["properties"]["command"]["const"]
+        for name, definition in definitions.items()
+        if name.endswith("Output")
+    ]
+    assert len(commands) == 12
     for command in commands:
         assert f"`{command}`" in text
 
@@ -71,7 +75,7 @@ def test_tables_have_one_shape_in_every_command(capsys, arguments):
 def test_a_refit_holds_the_whole_table(capsys, tmp_path):
     (table,) = printed(capsys, "refit", "q", "--grid", "9", "--out", str(tmp_path))["tables"]
     file = tmp_path / "q.json"
-    assert set(table) == {*TABLE, "content"}
+    assert set(table) == {*TABLE, "content", "second_opinion"}
     assert table["file"] == str(file)
     assert table["content"] == json.loads(file.read_text())
     assert table["errors"] == table["content"]["errors"]["off_grid"]
