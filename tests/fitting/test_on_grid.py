@@ -145,7 +145,7 @@ def test_a_solver_of_ones_own_is_given_the_grid_and_the_exact_values():
 def test_a_fit_on_a_grid_says_whether_it_converged(form, monkeypatch):
     good = OnGrid().fit(form, 9, "uniform", lambda _: None)
     assert good.converged and "not converge" not in good.solver
-    worse = np.asarray(good.coefficients) * 1.01
+    worse = jnp.asarray(good.coefficients) * 1.01
     monkeypatch.setattr(on_grid, "solve_in_general", lambda *_: (worse, "moved"))
     bad = OnGrid().fit(form, 9, "uniform", lambda _: None)
     assert bad.converged is False
