@@ -140,25 +140,28 @@ class Exchange:
     ) -> tuple[np.ndarray, Sample, bool]:
         """Minimise the largest error, adding points with larger errors to the sample in turn.
 
-        Returns the coefficients with the least largest error, inside and outside the sample, the
+        Returns the coefficients with the least largest error at all points that were found, the
         extended sample, and whether the last largest error is nowhere larger.
         """
         if form.reference.data is not None:
             # Data have no values elsewhere: the rows that are held out judge the fit.
             return self.minimax(_problem(form, sample, goal), start, goal.side), sample, True
-        best, least, found, settled = start, np.inf, start, not len(start)
+        every, found, settled = [start], start, not len(start)
         for turn in range(self.exchanges if len(start) else 0):
             problem = _problem(form, sample, goal)
             found = self.minimax(problem, found, goal.side)
+            every.append(found)
             worst, size = self._worst_elsewhere(form, found, goal, measure, SEED + 2 + turn)
             known = badness(problem.values(found), *limits(problem, goal.side)).max()
             settled = bool(size <= known * (1 + self.settled))
-            if max(known, size) < least:
-                best, least = found, max(known, size)
             if settled:
                 break
             sample = sample.extended(worst)
-        return best, sample, bool(settled)
+        problem = _problem(form, sample, goal)
+        good = [z for z in every if problem.is_good(z)] or [found]
+        allowed = limits(problem, goal.side)
+        best = min(good, key=lambda z: badness(problem.values(z), *allowed).max(initial=0.0))
+        return best, sample, settled
 
     def _worst_elsewhere(self, form: Form, found: np.ndarray, goal: Goal, measure: str, seed: int):
         """Return the points outside the sample with the largest errors, and the largest error.

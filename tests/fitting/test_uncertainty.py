@@ -1,4 +1,4 @@
-"""Standard errors of coefficients; test_certified_regression.py has certified ones."""
+"""Standard errors of coefficients. Certified ones are in test_certified_regression.py."""
 
 import jax.numpy as jnp
 import numpy as np

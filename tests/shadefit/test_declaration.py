@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 import shadefit as sf
 from coefficients.catalogue import resolve
 from programs import LANGUAGES
+from quantities.registry import unregister
 
 X = sf.Axis("x", 0, 4)
 
@@ -92,6 +93,7 @@ def test_published_constants_are_compared_with():
     assert entry.kind == "published"
     assert entry.require_table().publication.source == "a paper"
     assert float(entry.require_fitted()(1.0)) == 1.9
+    unregister("line")
 
 
 def test_a_weight_multiplies_errors():
