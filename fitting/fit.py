@@ -174,7 +174,7 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
     errors = form_values(fitted, sample.points) - sample.exact
     least = None
     if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
-        least = least_error(form, sample.points, sample.exact, errors)
+        least = least_error(fitted, sample.points, sample.exact, sample.error)
     return Fit(
         fitted=fitted,
         grid=sample,

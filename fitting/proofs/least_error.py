@@ -3,49 +3,80 @@
 import numpy as np
 from scipy.optimize import linprog
 
-from fitting.form import Form
-from fitting.linearity import linear_parts
-from fitting.solvers.residuals import largest_of
+from fitting.form import FittedForm
+from fitting.solvers.minimax import orthonormal_steps, quotient_lines
+from fitting.solvers.residuals import Residuals, largest_of, residuals
 
 # The bound is tried at these fractions of the largest error that was found, the highest first.
-LEVELS = (0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)
+LEVELS = (0.99999, 0.9999, 0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)
 # The linear program uses this many points with the largest errors, and about as many evenly chosen.
 ROWS = 500
-_INFEASIBLE = 2  # linprog's status
 
 
 def least_error(
-    form: Form, points: np.ndarray, exact: np.ndarray, errors: np.ndarray
+    fitted: FittedForm, points: np.ndarray, exact: np.ndarray, error_of_exact: float = 0.0
 ) -> float | None:
     """Return a lower bound of the largest error that any coefficients of a form can have.
 
-    `errors` (n,) are those of the fit, at `points` (n, axes) with the exact values `exact` (n,). If
-    the form is a quotient N/D of linear functions with D > 0, its error is at most t where
-    |N − exact·D| ≤ t·D, which is linear in the coefficients. If a linear program shows that no
-    coefficients satisfy this at some of the points, t is a lower bound. Returns None if no bound is
-    found, or if the form is no such quotient.
+    `fitted` has the best known coefficients, `points` is (n, axes), and `exact` (n,) holds the
+    exact values there, to within `error_of_exact`, which is subtracted from the bound. If the form
+    is a quotient N/D of linear functions with D > 0, its error is at most t where
+    |N − exact·D| ≤ t·D, which is linear in the coefficients. The dual solution of a linear program
+    is a combination of these inequalities that no coefficients satisfy; then t is a lower bound.
+    Returns None if no bound is found, or if the form is no such quotient.
     """
+    form = fitted.form
     if not (form.has_least_error and form.size):
         return None
-    some = largest_of(np.abs(errors), ROWS)
-    some[:: max(len(points) // ROWS, 1)] = True
-    parts = linear_parts(form, points[some])
-    if parts is None:
+    problem = residuals(
+        form, points, exact, np.ones(len(exact)), np.full(form.size, True), np.zeros(form.size)
+    )
+    if problem.parts is None:
         return None
-    attained = float(np.max(np.abs(errors)))
-    for level in LEVELS:
-        t = level * attained
-        rows, limits = [-parts.b], [parts.b0 - 1e-9]
-        for sign in (1, -1):
-            target = exact[some] + sign * t
-            rows.append(sign * (parts.a - target[:, None] * parts.b))
-            limits.append(sign * (target * parts.b0 - parts.a0))
-        solved = linprog(
-            np.zeros(parts.a.shape[1]),
-            np.concatenate(rows),
-            np.concatenate(limits),
-            bounds=[(None, None)] * parts.a.shape[1],
-        )
-        if solved.status == _INFEASIBLE:
-            return t
+    z = fitted.constants.ravel()
+    error = problem.values(z)
+    some = largest_of(np.abs(error), ROWS)
+    some[:: max(len(points) // ROWS, 1)] = True
+    attained = float(np.max(np.abs(error)))
+    for level in LEVELS if attained > 0 else ():
+        bound = level * attained - error_of_exact
+        if bound <= 0:
+            return None
+        if _is_refuted(problem, z, error, np.nonzero(some)[0], level):
+            return bound
     return None
+
+
+def _is_refuted(problem: Residuals, z, error, rows, level: float) -> bool:
+    """Whether no coefficients have errors below `level` times the largest error at points `rows`.
+
+    The program minimises v, where sign·(e + s·δ) − level·(1 + g·δ) ≤ v for both signs, and e are
+    the errors divided by the largest one. Multipliers λ ≥ 0 of these rows with the sum 1 show that
+    v is at least Σλ·(sign·e − level), less the size of Σλ·(sign·s − level·g) times the size of δ.
+    If this is positive, v cannot be 0. The steps δ keep the mean denominator, so that a denominator
+    is at most n times the mean, and weighted errors at most n; with the orthonormal steps this
+    limits the size of δ to 2n.
+    """
+    lines = quotient_lines(problem, z, error, rows, 0)
+    basis = orthonormal_steps(lines)
+    e, count = lines.error / lines.size, basis.shape[1]
+    s, g = lines.slopes @ basis / lines.size, lines.growth @ basis
+    weight = lines.weight
+    matrix = np.concatenate([(sign * s - level * g) * weight[:, None] for sign in (1, -1)])
+    limit = np.concatenate([(level - sign * e) * weight for sign in (1, -1)])
+    solved = linprog(
+        np.append(np.zeros(count), 1.0),
+        np.column_stack([matrix, np.full(len(matrix), -1.0)]),
+        limit,
+        bounds=[(None, None)] * count + [(None, None)],
+        options={f"{kind}_feasibility_tolerance": 1e-10 for kind in ("primal", "dual")},
+    )
+    if not solved.success:
+        return False
+    multipliers = np.maximum(-solved.ineqlin.marginals, 0.0)
+    total = multipliers.sum()
+    if not total > 0:
+        return False
+    multipliers = multipliers / total
+    slack = np.linalg.norm(multipliers @ matrix) * 2 * len(rows)
+    return bool(-multipliers @ limit - slack > 1e-12)

@@ -14,10 +14,11 @@ Size = Callable[[np.ndarray], np.ndarray]
 _NODES = 512
 # Then intervals are halved in rounds, if the error changes in them by more than this part of the
 # largest error, until this number of points is reached.
-_CHANGE, _HALVINGS, _MOST = 0.1, 40, 8000
+_CHANGE, _HALVINGS, _MOST = 0.1, 30, 8000
 # Local maxima above this part of the largest are refined. In each round, the interval around one is
-# divided into `_PIECES` and replaced by two of these.
-_LARGE, _REFINEMENTS, _PIECES = 0.5, 8, 8
+# divided into `_PIECES` and replaced by two of these. The exact values of a round are evaluated at
+# once, because a reference may need as long for one point as for thousands.
+_LARGE, _REFINEMENTS, _PIECES = 0.5, 3, 16
 # Over two axes, hill climbing starts in this number of cells an axis, so that it finds most maxima.
 _climb_on_plane = HillClimbing(cells=12)
 

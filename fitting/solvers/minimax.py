@@ -38,7 +38,7 @@ _OPTIMAL = 1e-8
 
 
 @dataclass(frozen=True)
-class _Lines:
+class Lines:
     """The rows of a linear program at the present coefficients.
 
     At a step δ, the errors of a quotient are (error + slopes·δ)/(1 + growth·δ), exactly. For any
@@ -118,7 +118,7 @@ class Minimax:
                 best, least = z, size.max()
             kept |= largest_of(size, count // 4) & (size > known)
             rows = np.nonzero(kept)[0]
-            lines = _of_quotient(problem, z, error, rows, self.rows)
+            lines = quotient_lines(problem, z, error, rows, self.rows)
             trial, promised = self._step(lines, z, rows, allowed, self.trust)
             if promised < _OPTIMAL or idle >= self.patience:
                 break
@@ -183,7 +183,7 @@ class Minimax:
                 break
         return best
 
-    def _step(self, lines: "_Lines", z, rows, allowed, trust) -> tuple[np.ndarray, float]:
+    def _step(self, lines: Lines, z, rows, allowed, trust) -> tuple[np.ndarray, float]:
         """Return coefficients (m,) that minimise the largest error at points `rows`.
 
         The second result is the part of the largest error that the program takes away; ∞ if the
@@ -191,7 +191,7 @@ class Minimax:
         coefficients are `z`.
         """
         size = lines.size
-        basis = lines.steps @ _basis(lines.weight[:, None] * lines.slopes @ lines.steps) * size
+        basis = orthonormal_steps(lines)
         count = basis.shape[1]
         if not count:
             return z, 0.0
@@ -231,13 +231,13 @@ class Minimax:
         return moved, -solved[-2] if over == 0 else np.inf
 
 
-def _of_tangent(problem: Residuals, z, error, rows, count: int) -> _Lines:
+def _of_tangent(problem: Residuals, z, error, rows, count: int) -> Lines:
     """Linearise the errors, and what must stay positive at the `count` points with the least."""
     room = problem.positive(z)
     low = np.nonzero(largest_of(-room, count))[0]
     slopes = problem.positive_slopes(z, low)
     held = np.any(slopes != 0, axis=1)
-    return _Lines(
+    return Lines(
         error[rows],
         problem.slopes(z, rows),
         np.zeros((len(rows), len(z))),
@@ -248,7 +248,7 @@ def _of_tangent(problem: Residuals, z, error, rows, count: int) -> _Lines:
     )
 
 
-def _of_quotient(problem: Residuals, z, error, rows, count: int) -> _Lines:
+def quotient_lines(problem: Residuals, z, error, rows, count: int) -> Lines:
     """Return the rows for a quotient (a₀s + a·c)/(b₀s + b·c), whose unknowns are c and s.
 
     The present s is 1. Numerator and denominator may be multiplied by any number: the steps keep
@@ -270,7 +270,7 @@ def _of_quotient(problem: Residuals, z, error, rows, count: int) -> _Lines:
     # Where a denominator is small, its row is divided by what it may grow to.
     weight = np.minimum(weight, 1)
     size = np.abs(error[rows]).max()
-    return _Lines(error[rows], slopes, growth[rows], growth[near], steps, weight[rows], size)
+    return Lines(error[rows], slopes, growth[rows], growth[near], steps, weight[rows], size)
 
 
 def _across(row: np.ndarray) -> np.ndarray:
@@ -300,15 +300,18 @@ def _lowered(problem: Residuals, old: np.ndarray, new: np.ndarray) -> np.ndarray
     return (parts.b0 + parts.b @ new) / (parts.b0 + parts.b @ old)
 
 
-def _basis(slopes: np.ndarray) -> np.ndarray:
-    """Return steps (m, r) of which each changes the values by an rms of one, independently."""
+def orthonormal_steps(lines: Lines) -> np.ndarray:
+    """Return steps (m, r) of which each changes the errors by their largest one, independently.
+
+    The rms change over the rows, times their weights, is `lines.size`.
+    """
+    slopes = lines.weight[:, None] * (lines.slopes @ lines.steps)
     norms = np.linalg.norm(slopes, axis=0)
     unit = 1 / np.where(norms > 0, norms, 1.0)
-    triangle = np.linalg.qr(slopes * unit, mode="r")
-    _, singular, right = np.linalg.svd(triangle)
+    _, singular, right = np.linalg.svd(np.linalg.qr(slopes * unit, mode="r"))
     kept = singular > _RANK * max(singular[0], 1e-300)
     steps = unit[:, None] * right[: len(singular)][kept].T / singular[kept]
-    return steps * np.sqrt(len(slopes))
+    return lines.steps @ steps * (np.sqrt(len(slopes)) * lines.size)
 
 
 def _rows(matrix, limit, some=None, column=None, weight=None) -> tuple[np.ndarray, np.ndarray]:

@@ -64,9 +64,6 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
         starts=pole_starts(terms, poles),
         shape={"structure": structure, "terms": terms, "poles": poles},
         proofs=Proofs(positive=lambda c, _: least_offset(c, terms, poles)),
-        # Forms without poles are linear. But their errors can be as small as the tolerance of the
-        # linear programs, 1e-7, so that a lower bound found by these would not be reliable.
-        has_least_error=False,
     )
 
 
