@@ -24,6 +24,8 @@ from fitting.solvers.scattered_squares import fit_squares
 from fitting.solvers.starts import quotient_starts
 
 PRECISIONS = {"float32": np.float32, "float16": np.float16}
+# A part of a denominator that is smaller than this does not change values beyond rounding by much.
+_NEGLIGIBLE = 1e-10
 SQUARES = "Levenberg–Marquardt (QR)"
 
 
@@ -89,6 +91,9 @@ class Exchange:
             words = f"{SQUARES}; linear programs (HiGHS)"
             if not converged:
                 words += f"; the largest error did not settle in {self.exchanges} exchanges"
+        if _runs_away(_problem(form, sample, goal), found):
+            converged = False
+            words += "; coefficients grow without limit: let another term of the denominator be 1"
         if goal.rounding != "none":
             progress(f"{form.name}: rounding to {goal.rounding}")
             found = self._rounded(form, sample, goal, found)
@@ -209,6 +214,18 @@ def _problem(
     free = np.full(form.size, True) if free is None else free.copy()
     fixed = np.zeros(form.size) if fixed is None else fixed.copy()
     return residuals(form, sample.points, sample.exact, sample.scale, free, fixed, goal.bounded)
+
+
+def _runs_away(problem: Residuals, z: np.ndarray) -> bool:
+    """Whether the part of a quotient's denominator without coefficients has become negligible.
+
+    Then the best denominator has not that part, or has it with the other sign, so that all other
+    coefficients grow.
+    """
+    parts = problem.parts
+    if parts is None or not np.any(parts.b):
+        return False
+    return bool(np.all(np.abs(parts.b0) <= _NEGLIGIBLE * np.abs(parts.b0 + parts.b @ z)))
 
 
 def _require_range(form: Form, found: np.ndarray, rounding: str) -> None:

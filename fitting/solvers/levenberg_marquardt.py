@@ -22,8 +22,8 @@ _WORTHWHILE = 1e-4
 _POLISHED = 100
 # A singular value of the scaled Jacobian below this part of the largest is rounding.
 _RANK = 1e-13
-# A fit has converged if the residual is orthogonal to the columns of the Jacobian to this cosine, or
-# if the Gauss–Newton step is at most this part of the coefficients, both measured in their scale.
+# A fit has converged if the cosine of the angle of the residual with the space of the Jacobian's
+# columns is at most this, or if the Gauss–Newton step is at most this part of the coefficients.
 CONVERGED_COSINE, CONVERGED_STEP = 1e-6, 1e-8
 
 

@@ -69,7 +69,9 @@ def fit_squares(
     return SquaresFit(best.z, best.converged, len(ends))
 
 
-def _descend(problem: Residuals, start: np.ndarray, steps: int, worthwhile: float) -> Descent | None:
+def _descend(
+    problem: Residuals, start: np.ndarray, steps: int, worthwhile: float
+) -> Descent | None:
     """Return the end of a descent from one start; None if it has a pole."""
     everywhere = np.arange(len(problem.exact))
 

@@ -1,4 +1,4 @@
-"""Nonlinear regression problems with certified solutions, from NIST's Statistical Reference Datasets.
+"""Nonlinear regression problems with certified solutions: NIST's Statistical Reference Datasets.
 
 `nist_strd.json` holds, for each problem, the data, the two published starts, the certified
 coefficients with their standard deviations, and the certified residual sum of squares. NIST
