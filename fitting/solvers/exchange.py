@@ -116,7 +116,10 @@ class Exchange:
             if problem.parts is None:
                 raise ValueError(f"{form.name} has no starts: give one")
             if not starts:
-                raise ValueError(f"{form.name}: its linear problem has a pole; try other monomials")
+                raise ValueError(
+                    f"{form.name}: no coefficients were found that make its denominator positive at "
+                    "all points; try other monomials"
+                )
         many = len(starts[0]) > self.many
         found = fit_squares(
             problem,
@@ -146,7 +149,7 @@ class Exchange:
             found = self.minimax(problem, found, goal.side)
             worst, size = self._worst_elsewhere(form, found, goal, measure, SEED + 2 + turn)
             known = badness(problem.values(found), *limits(problem, goal.side)).max()
-            settled = size <= known * (1 + self.settled)
+            settled = bool(size <= known * (1 + self.settled))
             if max(known, size) < least:
                 best, least = found, max(known, size)
             if settled:
@@ -230,9 +233,9 @@ def _runs_away(problem: Residuals, z: np.ndarray) -> bool:
 
 def _require_range(form: Form, found: np.ndarray, rounding: str) -> None:
     largest = float(np.finfo(PRECISIONS[rounding]).max)
-    worst = int(np.argmax(np.abs(found)))
-    if not np.abs(found[worst]) <= largest:
-        name = np.ravel(form.coefficient_names)[worst]
+    worst = int(np.argmax(np.abs(found))) if len(found) else None
+    if worst is not None and not np.abs(found[worst]) <= largest:
+        name = str(np.ravel(form.coefficient_names)[worst])
         raise ValueError(
             f"{form.name}: the coefficient {name!r} = {found[worst]:.6g} is too large for "
             f"{rounding}: allowed are −{largest:.6g} to {largest:.6g}; scale the form's terms"

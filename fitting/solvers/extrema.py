@@ -10,8 +10,8 @@ from integrals.reference import Axis
 Size = Callable[[np.ndarray], np.ndarray]
 
 # On a line, the error is first evaluated at so many points that are distributed as the axis says,
-# and so many that are denser at both ends.
-_NODES = 512
+# at so many that are denser at both ends, and at distances from both ends that are halved so often.
+_NODES, _NEAR_ENDS = 512, 48
 # Then intervals are halved in rounds, if the error changes in them by more than this part of the
 # largest error, until this number of points is reached.
 _CHANGE, _HALVINGS, _MOST = 0.1, 30, 8000
@@ -41,7 +41,9 @@ def _on_line(size: Size, axis: Axis) -> np.ndarray:
     even = np.linspace(0, 1, _NODES + 1)
     width = axis.upper - axis.lower
     ends = axis.lower + width * np.sin(np.pi / 2 * even) ** 2
-    x = np.unique(np.concatenate([axis.place(even), np.clip(ends, axis.lower, axis.upper)]))
+    near = width * 0.5 ** np.arange(2, _NEAR_ENDS)
+    x = np.concatenate([axis.place(even), ends, axis.lower + near, axis.upper - near])
+    x = np.unique(np.clip(x, axis.lower, axis.upper))
     y = size(x[:, None])
     for _ in range(_HALVINGS):
         large = np.max(y[np.isfinite(y)], initial=0.0)

@@ -3,6 +3,7 @@
 import functools
 from dataclasses import replace
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -28,6 +29,14 @@ R_FORM = problem("r").form(
     },
 )
 ONE_ROOT = problem("ps").form("one-root-ps", {"skew": 0, "degree": 1, "least_alpha": 0.15})
+
+
+# No quotient, and far from its minimum at the start.
+STEEP = toy_form(
+    lambda c, x, y: jnp.exp(-c[0] * x) * (c[1] + c[2] * y),
+    ["rate", "1", "y"],
+    starts=(np.array([20.0, 5.0, 5.0]),),
+)
 
 
 @functools.cache
@@ -137,13 +146,15 @@ def test_the_worst_points_of_elsewhere_are_added_to_the_sample():
         Exchange(exchanges=count).fit(form, goal, "uniform", None, lambda _: None)
         for count in (1, 8)
     )
-    assert len(settled[1].points) > len(once[1].points) >= len(sample_of(form).points)
+    assert len(settled.sample.points) > len(once.sample.points) >= len(sample_of(form).points)
     points, exact = checking_points(QUOTIENT, 5)
     largest = [
-        np.abs(form_values(QUOTIENT.fitted(found), points) - exact).max()
-        for found, _ in (once, settled)
+        np.abs(form_values(QUOTIENT.fitted(each.coefficients), points) - exact).max()
+        for each in (once, settled)
     ]
     assert largest[1] < largest[0]
+    assert settled.converged and not once.converged
+    assert "the largest error did not settle in 1 exchanges" in once.solver
 
 
 def test_the_solver_is_tuned_by_its_fields():
@@ -158,22 +169,61 @@ def test_a_form_that_is_no_quotient_needs_a_start():
         fit(form)
 
 
-def test_a_linear_start_with_a_pole_is_refused():
-    # The exact values change their sign in the domain, and so does the best denominator.
+def test_a_denominator_that_changes_its_sign_whatever_the_coefficients_is_refused():
+    form = toy_form(lambda c, x, y: 1 / (c[0] * y + c[1] * y * x), ["y", "xy"])
+    with pytest.raises(ValueError, match="no coefficients were found that make its denominator"):
+        fit(form)
+
+
+def test_exact_values_that_change_their_sign_do_not_lead_to_a_pole():
+    """The best quotient with any denominator has a pole where the exact values have one."""
     form = toy_form(lambda c, x, y: 1 / (1 + c[0] * (y - 0.5) + c[1] * x), ["y", "x"])
     exact = replace(
         TOY, closed_form=lambda x, y: type(TOY.closed_form(x, y))(1 / (0.02 + y - x), 1e-15 + 0 * x)
     )
-    with pytest.raises(ValueError, match="its linear problem has a pole; try other monomials"):
-        fit(replace(form, reference=exact))
+    found = fit(replace(form, reference=exact))
+    assert found.certificate.holds
 
 
 def test_starts_that_end_with_poles_are_refused():
     form = toy_form(
-        lambda c, x, y: 1 / (c[0] + 0.0 * x), ["a"], starts=(np.array([np.nan]),), name="poles"
+        lambda c, x, y: 1 / (c[0] ** 2 * c[0] + 0.0 * x),
+        ["a"],
+        starts=(np.array([np.nan]),),
+        name="poles",
     )
     with pytest.raises(ValueError, match="poles: no start gives a form without poles"):
         fit(form)
+
+
+def test_a_quotient_whose_own_starts_have_poles_is_fitted_from_others():
+    form = replace(QUOTIENT, starts=(np.full(5, np.nan),))
+    own, derived = fit(form), fit(QUOTIENT)
+    assert own.off_grid.rms == pytest.approx(derived.off_grid.rms, rel=1e-9)
+
+
+def test_a_coefficient_beyond_float16_is_refused_by_name():
+    form = toy_form(lambda c, x, y: 1e-6 * (c[0] + c[1] * x) + y, ["first", "second"])
+    with pytest.raises(ValueError, match=r"'first' = .* is too large for float16: allowed are"):
+        fit(form, Goal(rounding="float16"))
+
+
+def test_least_squares_that_do_not_converge_say_so():
+    found = Exchange(steps=1).fit(STEEP, Goal(), "uniform", None, lambda _: None)
+    assert not found.converged
+    assert "least squares did not converge from any of 4 starts" in found.solver
+    assert Exchange().fit(STEEP, Goal(), "uniform", None, lambda _: None).converged
+
+
+def test_a_denominator_whose_fixed_term_should_vanish_is_reported():
+    """The exact values are 1/(y + 1) times a constant: no finite c in 1 + c (y + 1) gives them."""
+    form = toy_form(lambda c, x, y: c[0] / (1 + c[1] * (y + 1.5)), ["above", "below"])
+    exact = replace(
+        TOY, closed_form=lambda x, y: type(TOY.closed_form(x, y))(1 / (y + 1.5), 1e-15 + 0 * x)
+    )
+    found = fit(replace(form, reference=exact))
+    assert not found.converged
+    assert "coefficients grow without limit" in found.solver
 
 
 def test_each_step_is_told():

@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from fitting import Goal
 from fitting.fit import fit
 from fitting.proofs.least_error import LEVELS, least_error
 from fitting.solvers.minimax import Minimax
 from fitting.solvers.residuals import residuals
-from quantities import problem
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
 from tests.fitting.toys import toy_form
 
@@ -19,22 +19,37 @@ Q_PROBLEM = residuals(QUADRATIC_Q, NODES, EXACT, np.ones(501), np.array([True, T
 
 
 def test_the_bound_of_a_linear_form_is_nearly_attained():
-    errors = Q_PROBLEM.values(Minimax()(Q_PROBLEM, np.zeros(2)))
-    largest = float(np.abs(errors).max())
-    bound = least_error(QUADRATIC_Q, NODES, EXACT, errors)
+    best = Minimax()(Q_PROBLEM, np.zeros(2))
+    largest = float(np.abs(Q_PROBLEM.values(best)).max())
+    bound = least_error(QUADRATIC_Q.fitted(best), NODES, EXACT)
     assert bound is not None
-    assert 0.99 * largest < bound <= largest * (1 + 1e-9)
+    assert 0.9999 * largest < bound <= largest
+    # The exact values' own error may be in the form's favour.
+    assert least_error(QUADRATIC_Q.fitted(best), NODES, EXACT, 1e-5) == pytest.approx(bound - 1e-5)
+    assert least_error(QUADRATIC_Q.fitted(best), NODES, EXACT, 1.0) is None
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-9])
+def test_the_bound_of_a_small_error_is_as_tight(size):
+    """HiGHS solves to 1e-7 at best 1e-10: errors are divided by the largest one."""
+    exact = 1 - 2 * NODES[:, 0] + size * np.cos(40 * NODES[:, 0])
+    problem = residuals(QUADRATIC_Q, NODES, exact, np.ones(501), np.full(2, True), np.zeros(2))
+    best = Minimax()(problem, np.array([-2.0, 0.0]))
+    largest = float(np.abs(problem.values(best)).max())
+    bound = least_error(QUADRATIC_Q.fitted(best), NODES, exact)
+    assert largest < 2 * size
+    assert bound is not None and 0.999 * largest < bound <= largest
 
 
 def test_the_bound_shows_that_an_error_is_not_the_least():
-    errors = Q_PROBLEM.values(np.array([-1.5, 1.0]))
-    bound = least_error(QUADRATIC_Q, NODES, EXACT, errors)
-    assert bound is None or bound < 0.6 * np.abs(errors).max()
+    worse = np.array([-1.5, 1.0])
+    bound = least_error(QUADRATIC_Q.fitted(worse), NODES, EXACT)
+    assert bound is None or bound < 0.6 * np.abs(Q_PROBLEM.values(worse)).max()
 
 
 def test_no_coefficients_have_a_smaller_error_than_the_bound():
     best = Minimax()(Q_PROBLEM, np.zeros(2))
-    bound = least_error(QUADRATIC_Q, NODES, EXACT, Q_PROBLEM.values(best))
+    bound = least_error(QUADRATIC_Q.fitted(best), NODES, EXACT)
     assert bound is not None
     random = np.random.default_rng(3)
     for size in (1e-1, 1e-3, 1e-5):
@@ -44,20 +59,14 @@ def test_no_coefficients_have_a_smaller_error_than_the_bound():
 
 def test_where_no_bound_is_sought_there_is_none():
     """A form that says so, one without coefficients, and one that is no quotient."""
-    errors = Q_PROBLEM.values(np.array([-1.7, 1.2]))
-    silent = replace(QUADRATIC_Q, has_least_error=False)
-    assert least_error(silent, NODES, EXACT, errors) is None
-    assert (
-        not problem("q")
-        .form("pole-q", {"structure": "one", "terms": 2, "poles": 0})
-        .has_least_error
-    )
+    silent = replace(QUADRATIC_Q, has_least_error=False).fitted(np.array([-1.7, 1.2]))
+    assert least_error(silent, NODES, EXACT) is None
     points = np.array([[0.1, 0.2], [0.3, 0.4]])
-    for form in (
-        toy_form(lambda c, x, y: x + y, []),
-        toy_form(lambda c, x, y: c[0] * c[1] * x, ["a", "b"]),
+    for form, coefficients in (
+        (toy_form(lambda c, x, y: x + y, []), np.zeros(0)),
+        (toy_form(lambda c, x, y: c[0] * c[1] * x, ["a", "b"]), np.ones(2)),
     ):
-        assert least_error(form, points, np.ones(2), np.array([0.1, -0.2])) is None
+        assert least_error(form.fitted(coefficients), points, np.ones(2)) is None
 
 
 def test_bounds_are_sought_from_the_tightest():
