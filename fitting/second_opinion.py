@@ -26,6 +26,8 @@ _STEPS = 500
 # Both end in the same place if their values differ by at most this part of the fit's error. The
 # rounding of the values, relative to the largest one, is added.
 SAME, ROUNDING = 0.01, 1e-10
+# The other end is better if its error is smaller by more than this part.
+BETTER = 1e-3
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class SecondOpinion:
     """What another solver found.
 
     * `agreed`: whether its best end has the same values as the fit, to 1 % of the fit's error.
-    * `better`: whether its error is smaller by more than that.
+    * `better`: whether its error is smaller, by more than a thousandth.
     * `error`, `other_error`: what the goal minimises, at the points of the fit: the rms error, or
       the largest error. Both are weighted as the goal says.
     * `values`: the largest difference of the values at these points.
@@ -70,7 +72,7 @@ def second_opinion(form: Form, goal: Goal, fit: Fit) -> SecondOpinion:
     random = np.random.default_rng(_SEED)
     starts = [known * np.exp(SPREAD * random.normal(size=form.size)) for _ in range(STARTS)]
     starts += quotient_starts(problem)
-    ends = [_refit(form, sample, problem, goal, start) for start in starts]
+    ends = _refit(form, sample, problem, goal, known, starts)
     sizes = [_attained(problem, goal, end) for end in ends]
     other, found = ends[int(np.argmin(sizes))], _attained(problem, goal, known)
     apart = problem.values(other) - problem.values(known)
@@ -79,7 +81,7 @@ def second_opinion(form: Form, goal: Goal, fit: Fit) -> SecondOpinion:
     both = np.maximum(np.maximum(np.abs(known), np.abs(other)), 1e-300)
     return SecondOpinion(
         agreed=bool(np.max(np.abs(apart)) <= allowed),
-        better=bool(min(sizes) < found - allowed),
+        better=bool(min(sizes) < found * (1 - BETTER)),
         error=found,
         other_error=float(min(sizes)),
         values=values,
@@ -106,10 +108,10 @@ def _sample_of(form: Form, goal: Goal, fit: Fit) -> Sample:
     return Sample(grid.points, exact, float(np.max(estimates.error)), scale)
 
 
-def _refit(form: Form, sample: Sample, problem: Residuals, goal: Goal, start: np.ndarray):
-    """Return where jaxopt's descent from a start ends; the start, if that is not finite."""
-    slopes = problem.slopes(start, np.arange(len(sample.exact)))
-    norms = np.linalg.norm(np.where(np.isfinite(slopes), slopes, 0.0), axis=0)
+def _refit(form: Form, sample: Sample, problem: Residuals, goal: Goal, known: np.ndarray, starts):
+    """Return where jaxopt's descents from the starts end; a start, if its end is not finite."""
+    slopes = problem.slopes(known, np.arange(len(sample.exact)))
+    norms = np.linalg.norm(slopes, axis=0)
     unit = 1 / np.where(norms > 0, norms, 1.0)
     points, exact, scale = map(jnp.asarray, (sample.points, sample.exact, sample.scale))
 
@@ -117,11 +119,15 @@ def _refit(form: Form, sample: Sample, problem: Residuals, goal: Goal, start: np
         c = (scaled * unit).reshape(form.coefficient_shape)
         return scale * (jax.vmap(lambda point: form(c, *point))(points) - exact)
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # jaxopt says at import that it is no longer maintained
-        end = np.asarray(solve_nonlinear_jaxopt(residual, jnp.asarray(start / unit), _STEPS)) * unit
-    end = end if np.isfinite(end).all() and problem.is_good(end) else start
-    return Minimax()(problem, end, goal.side) if goal.norm == "linf" else end
+    descend = jax.jit(lambda start: solve_nonlinear_jaxopt(residual, start, _STEPS))
+    ends = []
+    for start in starts:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # jaxopt says at import that it is not maintained
+            end = np.asarray(descend(jnp.asarray(start / unit))) * unit
+        end = end if np.isfinite(end).all() and problem.is_good(end) else start
+        ends.append(Minimax()(problem, end, goal.side) if goal.norm == "linf" else end)
+    return ends
 
 
 def _attained(problem: Residuals, goal: Goal, z: np.ndarray) -> float:
