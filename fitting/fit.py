@@ -48,7 +48,8 @@ class Fit:
       is not proven.
     * `converged`: whether the solver reached what it looks for: for least squares a minimum, for
       the largest error one that is nowhere larger than at the points of the fit. If it is false,
-      `solver` says what happened, and the fit is only as good as its errors say.
+      `solver` says what happened, and the fit is only as good as its errors say. None if it was not
+      examined, as for a form of two stages on a grid.
     * `below`: a number whose positive sign proves that no value is above the exact one; None for a
       form that has no such proof.
     """
@@ -66,7 +67,7 @@ class Fit:
     least_error: float | None = None
     range: Bounds | None = None
     below: float | None = None
-    converged: bool = True
+    converged: bool | None = None
 
 
 def fit(
@@ -153,6 +154,7 @@ def _on_grid(form: Form, found: GridFit, nodes: int) -> Fit:
         goal=getattr(form.solver, "goal", LEAST_SQUARES),
         range=certify_range(fitted),
         below=below,
+        converged=found.converged,
     )
 
 

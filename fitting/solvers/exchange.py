@@ -140,21 +140,24 @@ class Exchange:
     ) -> tuple[np.ndarray, Sample, bool]:
         """Minimise the largest error, adding points with larger errors to the sample in turn.
 
-        Returns the coefficients with the least largest error, inside and outside the sample, the
+        Returns the coefficients with the least largest error at all points that were found, the
         extended sample, and whether the last largest error is nowhere larger.
         """
-        best, least, found, settled = start, np.inf, start, not len(start)
+        every, found, settled = [start], start, not len(start)
         for turn in range(self.exchanges if len(start) else 0):
             problem = _problem(form, sample, goal)
             found = self.minimax(problem, found, goal.side)
+            every.append(found)
             worst, size = self._worst_elsewhere(form, found, goal, measure, SEED + 2 + turn)
             known = badness(problem.values(found), *limits(problem, goal.side)).max()
             settled = bool(size <= known * (1 + self.settled))
-            if max(known, size) < least:
-                best, least = found, max(known, size)
             if settled:
                 break
             sample = sample.extended(worst)
+        problem = _problem(form, sample, goal)
+        good = [z for z in every if problem.is_good(z)] or [found]
+        allowed = limits(problem, goal.side)
+        best = min(good, key=lambda z: badness(problem.values(z), *allowed).max(initial=0.0))
         return best, sample, settled
 
     def _worst_elsewhere(self, form: Form, found: np.ndarray, goal: Goal, measure: str, seed: int):

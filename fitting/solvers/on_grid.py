@@ -14,8 +14,12 @@ from fitting.goal import LEAST_SQUARES, Goal
 from fitting.linearity import LinearParts, linear_parts
 from fitting.points.grids import Grid, MakeGrid, gauss_grid
 from fitting.solvers.least_squares import solve_linear, solve_nonlinear
+from fitting.solvers.residuals import residuals
 
 Progress = Callable[[str], None]
+# A fit on a grid has converged if the cosine of the angle of the residual with the space of the
+# Jacobian's columns is at most this: a linear step would lower the rms error by 5e-6 of it.
+STATIONARY = 3e-3
 MARQUARDT = "Levenberg–Marquardt (optimistix)"
 
 
@@ -28,6 +32,7 @@ class GridFit:
     * `measure`: the name of the measure that weighs the errors.
     * `inner`: the number of the second stage's points at each node; 0 if there are none.
     * `solver`: the solver, in words.
+    * `converged`: whether the sum of squared errors is stationary; None if this was not examined.
     """
 
     coefficients: Array
@@ -37,6 +42,7 @@ class GridFit:
     measure: str
     inner: int
     solver: str
+    converged: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -70,7 +76,28 @@ class OnGrid:
         difference = difference - np.asarray(estimates.value)
         on_grid = measure(difference, grid.points, form, grid.weights)
         error = float(np.max(estimates.error))
-        return GridFit(coefficients, grid, on_grid, error, "uniform", 0, solver)
+        converged = None
+        if self.goal == LEAST_SQUARES and form.size:
+            converged = _is_stationary(form, coefficients, grid, np.asarray(estimates.value))
+            solver += "" if converged else "; least squares did not converge"
+        return GridFit(coefficients, grid, on_grid, error, "uniform", 0, solver, converged)
+
+
+def _is_stationary(form: Form, coefficients: Array, grid: Grid, exact: np.ndarray) -> bool:
+    """Whether the residual is nearly orthogonal to the columns of the Jacobian."""
+    root, all_free = np.sqrt(grid.weights), np.full(form.size, True)
+    problem = residuals(form, grid.points, exact, root, all_free, np.zeros(form.size))
+    z = np.asarray(coefficients).ravel()
+    error, slopes = problem.values(z), problem.slopes(z, np.arange(len(exact)))
+    if not (np.isfinite(error).all() and np.isfinite(slopes).all()):
+        return False
+    norms = np.linalg.norm(slopes, axis=0)
+    left, singular, _ = np.linalg.svd(slopes / np.where(norms > 0, norms, 1.0), full_matrices=False)
+    tangent = left[:, singular > 1e-12 * singular[0]]
+    size = np.linalg.norm(error)
+    # An exact fit leaves rounding, which has no direction.
+    exactly = 1e-13 * np.linalg.norm(exact * root)
+    return bool(size <= exactly or np.linalg.norm(tangent.T @ error) <= STATIONARY * size)
 
 
 def solve_in_general(form: Form, grid: Grid, exact: Array) -> tuple[Array, str]:
