@@ -4,7 +4,7 @@ import numpy as np
 from scipy.optimize import linprog
 
 from fitting.form import FittedForm
-from fitting.solvers.minimax import orthonormal_steps, quotient_lines
+from fitting.solvers.linear_programs import orthonormal_steps, quotient_lines
 from fitting.solvers.residuals import Residuals, largest_of, residuals
 
 # The bound is tried at these fractions of the largest error that was found, the highest first.

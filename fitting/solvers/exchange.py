@@ -117,8 +117,8 @@ class Exchange:
                 raise ValueError(f"{form.name} has no starts: give one")
             if not starts:
                 raise ValueError(
-                    f"{form.name}: no coefficients were found that make its denominator positive at "
-                    "all points; try other monomials"
+                    f"{form.name}: no coefficients were found that make its denominator positive "
+                    "at all points; try other monomials"
                 )
         many = len(starts[0]) > self.many
         found = fit_squares(

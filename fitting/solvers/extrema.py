@@ -43,19 +43,20 @@ def _on_line(size: Size, axis: Axis) -> np.ndarray:
     ends = axis.lower + width * np.sin(np.pi / 2 * even) ** 2
     near = width * 0.5 ** np.arange(2, _NEAR_ENDS)
     x = np.concatenate([axis.place(even), ends, axis.lower + near, axis.upper - near])
-    x = np.unique(np.clip(x, axis.lower, axis.upper))
+    x = np.unique(np.clip(x, axis.lower, axis.upper)).astype(float)
     y = size(x[:, None])
     for _ in range(_HALVINGS):
         large = np.max(y[np.isfinite(y)], initial=0.0)
         halved = (np.abs(np.diff(y)) > _CHANGE * large) & (np.diff(x) > 1e-15 * width)
-        middle = (x[:-1] + x[1:])[halved] / 2
+        middle = x[:-1][halved] + np.diff(x)[halved] / 2
         if not len(middle) or len(x) + len(middle) > _MOST:
             break
         x, y = np.append(x, middle), np.append(y, size(middle[:, None]))
         order = np.argsort(x)
         x, y = x[order], y[order]
     padded = np.concatenate([[-np.inf], y, [-np.inf]])
-    top = (y >= padded[:-2]) & (y >= padded[2:]) & (y >= _LARGE * np.max(y))
+    # Of neighbours with equal errors, the first is taken.
+    top = (y > padded[:-2]) & (y >= padded[2:]) & (y >= _LARGE * np.max(y))
     place = np.nonzero(top)[0]
     low, high = x[np.maximum(place - 1, 0)], x[np.minimum(place + 1, len(x) - 1)]
     best, value = x[place], y[place]

@@ -7,7 +7,7 @@ coordinates of a basis that is orthonormal at the points.
 import numpy as np
 
 from fitting.linearity import LinearParts
-from fitting.solvers.minimax import solve_program
+from fitting.solvers.linear_programs import solve_program
 from fitting.solvers.residuals import Residuals
 
 # The denominator of a start by a linear program is at least this part of its mean.

@@ -1,4 +1,4 @@
-"""Standard errors of coefficients; tests/fitting/test_certified_regression.py has certified ones."""
+"""Standard errors of coefficients. Certified ones are in test_certified_regression.py."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -49,7 +49,7 @@ def test_a_coefficient_without_effect_is_named():
 
 def test_what_has_no_standard_errors_is_refused():
     few = Sample(POINTS[:3], VALUES[:3], 0.0, np.ones(3))
-    with pytest.raises(ValueError, match="3 points for 3 coefficients of plane: .* at least 4"):
+    with pytest.raises(ValueError, match=r"3 points for 3 coefficients of plane: .* at least 4"):
         uncertainty(PLANE.fitted(TRUE), few)
     with pytest.raises(ValueError, match="fixed has no coefficients"):
         uncertainty(toy_form(lambda c, x, y: x + y, [], name="fixed").fitted(np.zeros(0)), few)

@@ -1,0 +1,98 @@
+"""Levenberg–Marquardt by QR. tests/fitting/test_certified_regression.py has real problems."""
+
+import numpy as np
+import pytest
+
+from fitting.solvers.levenberg_marquardt import levenberg_marquardt
+from fitting.solvers.residuals import residuals
+from fitting.solvers.scattered_squares import fit_squares
+from tests.fitting.toys import toy_form
+
+
+def rosenbrock(z):
+    return np.array([10 * (z[1] - z[0] ** 2), 1 - z[0]])
+
+
+def rosenbrock_slopes(z):
+    return np.array([[-20 * z[0], 10.0], [-1.0, 0.0]])
+
+
+@pytest.mark.parametrize("reach", [0.1, 1.0, 100.0])
+def test_an_exact_solution_is_found_to_rounding(reach):
+    end = levenberg_marquardt(
+        rosenbrock, rosenbrock_slopes, np.array([-1.2, 1.0]), 200, reach=reach
+    )
+    assert end.converged
+    np.testing.assert_allclose(end.z, 1, rtol=1e-12)
+
+
+def test_too_few_steps_are_told():
+    end = levenberg_marquardt(rosenbrock, rosenbrock_slopes, np.array([-1.2, 1.0]), 3)
+    assert not end.converged
+    assert 0.1 < end.norm < np.linalg.norm(rosenbrock(np.array([-1.2, 1.0])))
+
+
+X = np.linspace(0, 1, 30)
+
+
+@pytest.mark.parametrize("size", [1e-8, 1.0, 1e8])
+def test_the_scale_of_coefficients_does_not_matter(size):
+    """A linear problem with columns of very different size, which normal equations cannot solve."""
+    matrix = np.vander(X, 9, increasing=True) * size ** (np.arange(9) / 4)
+    values = np.exp(X)
+    end = levenberg_marquardt(lambda z: matrix @ z - values, lambda _: matrix, np.zeros(9))
+    expected = np.polynomial.Polynomial.fit(X, values, 8)(X)
+    np.testing.assert_allclose(matrix @ end.z, expected, atol=1e-13)
+    assert end.converged
+
+
+def test_what_is_not_finite_is_not_entered():
+    def residual(z):
+        with np.errstate(invalid="ignore"):
+            return np.log(z) * np.ones(2)
+
+    end = levenberg_marquardt(residual, lambda z: np.ones((2, 1)) / z, np.array([30.0]), reach=10.0)
+    assert end.converged
+    np.testing.assert_allclose(end.z, 1, rtol=1e-12)
+    bad = levenberg_marquardt(residual, lambda z: np.ones((2, 1)) / z, np.array([-1.0]))
+    assert not bad.converged and bad.norm == np.inf
+
+
+def test_a_flat_residual_ends_at_the_start():
+    end = levenberg_marquardt(
+        lambda z: np.ones(3), lambda z: np.zeros((3, 2)), np.array([1.0, 2.0])
+    )
+    np.testing.assert_array_equal(end.z, [1, 2])
+    assert end.norm == pytest.approx(np.sqrt(3))
+
+
+POINTS = np.column_stack([X, 0 * X])
+NARROW = toy_form(lambda c, x, y: c[0] / (c[1] + x), ["above", "offset"], name="narrow")
+
+
+def narrow_problem(offset: float):
+    exact = 1 / (offset + X)
+    return residuals(NARROW, POINTS, exact, np.ones(30), np.full(2, True), np.zeros(2))
+
+
+@pytest.mark.parametrize("offset", [1.0, 1e-3, 1e-5])
+@pytest.mark.parametrize("start", [[1.0, 1.0], [2.0, -0.5]])
+def test_small_denominators_are_not_biased(offset, start):
+    """A penalty for denominators below 1e-2 would move the solution; only a pole has one."""
+    found = fit_squares(narrow_problem(offset), [np.array(start)])
+    assert found is not None and found.converged
+    np.testing.assert_allclose(found.z, [1, offset], rtol=1e-9)
+
+
+def test_the_better_of_two_ends_is_kept():
+    form = toy_form(lambda c, x, y: c[0] ** 2 * x + c[0] * (1 - x) / 2, ["a"], name="wells")
+    exact = X - (1 - X) / 2
+    problem = residuals(form, POINTS, exact, np.ones(30), np.full(1, True), np.zeros(1))
+    starts = [np.array([1.0]), np.array([-2.0])]
+    right, left = (fit_squares(problem, [start]) for start in starts)
+    assert right is not None and left is not None
+    assert right.converged and right.z[0] > 0.5
+    np.testing.assert_allclose(left.z, -1, rtol=1e-12)
+    both = fit_squares(problem, starts)
+    assert both is not None and both.tried == 2
+    np.testing.assert_array_equal(both.z, left.z)
