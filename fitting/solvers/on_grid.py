@@ -32,7 +32,8 @@ class GridFit:
     * `measure`: the name of the measure that weighs the errors.
     * `inner`: the number of the second stage's points at each node; 0 if there are none.
     * `solver`: the solver, in words.
-    * `converged`: whether the sum of squared errors is stationary; None if this was not examined.
+    * `converged`: whether the sum of squared errors is stationary; None if this was not examined, as
+      for a solver of one's own.
     """
 
     coefficients: Array
@@ -77,7 +78,7 @@ class OnGrid:
         on_grid = measure(difference, grid.points, form, grid.weights)
         error = float(np.max(estimates.error))
         converged = None
-        if self.goal == LEAST_SQUARES and form.size:
+        if self.solve is None and form.size:
             converged = _is_stationary(form, coefficients, grid, np.asarray(estimates.value))
             solver += "" if converged else "; least squares did not converge"
         return GridFit(coefficients, grid, on_grid, error, "uniform", 0, solver, converged)
