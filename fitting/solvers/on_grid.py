@@ -32,7 +32,7 @@ class GridFit:
     * `measure`: the name of the measure that weighs the errors.
     * `inner`: the number of the second stage's points at each node; 0 if there are none.
     * `solver`: the solver, in words.
-    * `converged`: whether the sum of squared errors is stationary; None if this was not examined, as
+    * `converged`: whether the sum of squared errors is stationary; None if not examined, as
       for a solver of one's own.
     """
 

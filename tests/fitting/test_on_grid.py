@@ -138,3 +138,15 @@ def test_a_solver_of_ones_own_is_given_the_grid_and_the_exact_values():
         found = OnGrid(trapezoid_grid, solve, words).fit(PLANE, 5, "uniform", lambda _: None)
         np.testing.assert_array_equal(found.coefficients, [1, 2, 3])
         assert (found.grid.spacing, found.solver) == ("uniform", said)
+        assert found.converged is None
+
+
+@pytest.mark.parametrize("form", [PLANE, QUOTIENT], ids=lambda form: form.name)
+def test_a_fit_on_a_grid_says_whether_it_converged(form, monkeypatch):
+    good = OnGrid().fit(form, 9, "uniform", lambda _: None)
+    assert good.converged and "not converge" not in good.solver
+    worse = jnp.asarray(good.coefficients) * 1.01
+    monkeypatch.setattr(on_grid, "solve_in_general", lambda *_: (worse, "moved"))
+    bad = OnGrid().fit(form, 9, "uniform", lambda _: None)
+    assert bad.converged is False
+    assert bad.solver == "moved; least squares did not converge"
