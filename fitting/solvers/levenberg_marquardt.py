@@ -100,9 +100,16 @@ def levenberg_marquardt(
     Jacobian's columns. The descent ends if the linearised residual promises to lower the sum of
     squares by less than the fraction `worthwhile`; the rounding of the sum hides gains below 1e-15.
     """
-    z = np.asarray(start, float)
+    # The square of a residual that is tried may overflow: it is then not better.
+    with np.errstate(over="ignore"):
+        return _descend(residual, jacobian, np.asarray(start, float), steps, reach, worthwhile)
+
+
+def _descend(
+    residual: Residual, jacobian: Jacobian, z, steps: int, reach: float, worthwhile: float
+) -> Descent:
     r = residual(z)
-    if not np.isfinite(r).all():
+    if not np.isfinite(r @ r):
         return Descent(z, np.inf, False)
     scale, radius = np.zeros(len(z)), None
     for _ in range(steps):
@@ -145,12 +152,11 @@ def _take(residual: Residual, tangent: _Tangent, z, r, radius):
         if np.all(trial == z):
             break
         moved = residual(trial)
-        finite = np.isfinite(moved).all()
+        square = float(moved @ moved) if np.isfinite(moved).all() else np.inf
         # What the linearised residual promises: |r|² − |r + J·dz|².
         along = tangent.singular * (tangent.right @ step)
         promised = -float(2 * tangent.projected @ along + along @ along)
-        gained = size**2 - float(moved @ moved) if finite else -np.inf
-        ratio = gained / promised if promised > 0 else -1.0
+        ratio = (size**2 - square) / promised if promised > 0 else -1.0
         if ratio < 0.25:
             radius = 0.25 * length
         elif ratio > 0.75 or damping == 0:

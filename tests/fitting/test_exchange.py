@@ -39,6 +39,14 @@ STEEP = toy_form(
 )
 
 
+# No quotient, and far from its minimum at the start.
+STEEP = toy_form(
+    lambda c, x, y: jnp.exp(-c[0] * x) * (c[1] + c[2] * y),
+    ["rate", "1", "y"],
+    starts=(np.array([20.0, 5.0, 5.0]),),
+)
+
+
 @functools.cache
 def made(form, goal: Goal) -> Fit:
     return fit(form, goal)

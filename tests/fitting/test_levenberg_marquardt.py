@@ -58,6 +58,20 @@ def test_what_is_not_finite_is_not_entered():
     assert not bad.converged and bad.norm == np.inf
 
 
+def test_a_residual_whose_square_overflows_is_not_entered():
+    """The first step goes to where e^(z²) is above 1e154."""
+    end = levenberg_marquardt(
+        lambda z: np.exp(np.minimum(z**2, 700.0)) * np.array([1.0, 1.0]) - [3.0, 5.0],
+        lambda z: 2 * z * np.exp(z**2) * np.ones((2, 1)),
+        np.array([0.02]),
+        reach=1e4,
+    )
+    assert end.converged
+    np.testing.assert_allclose(end.z**2, np.log(4), rtol=1e-9)
+    above = levenberg_marquardt(lambda z: 1e200 * z, lambda z: 1e200 * np.eye(2), np.ones(2))
+    assert not above.converged and above.norm == np.inf
+
+
 def test_a_flat_residual_ends_at_the_start():
     end = levenberg_marquardt(
         lambda z: np.ones(3), lambda z: np.zeros((3, 2)), np.array([1.0, 2.0])
