@@ -56,8 +56,8 @@ def _combined(c, cos_un: Scalar, cos_ut: Scalar) -> Array:
 
 
 PS_ROWS = Quotients(terms, beta, (0.5, 0.0, 0.0, 0.0, 0.0, 0.0), len(TERMS), len(TERMS))
-# The least denominators of the published and the refitted table are 0.0043 and 0.0195 on the domain.
-# A limit just below them changes no value, and keeps rounding to half precision from reaching 0.
+# The least denominators of the published and of the refitted table are 0.0043 and 0.0195.
+# A limit just below them changes no value; without it, half precision would round some to 0.
 LIMITED_PS_ROWS = replace(PS_ROWS, least=2.0**-8)
 R_QUOTIENT = Quotients(terms, beta, 0.5, len(TERMS), _BELOW_R)
 
