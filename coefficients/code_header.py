@@ -22,7 +22,8 @@ from programs import (
     trace,
 )
 from programs.toolchains.difference import difference, text_of
-from programs.toolchains.verification import HALF_SHARE, run_code
+from programs.toolchains.half_precision import verdict
+from programs.toolchains.verification import run_code
 
 
 def costs(functions: Sequence[Function]) -> dict[str, Cost]:
@@ -144,10 +145,5 @@ def _values(trial: Trial, key: str, source: str) -> tuple[np.ndarray, str]:
 
 def _verdict(trial: Trial, values: np.ndarray) -> str:
     """Say whether half precision is good enough: the same rule as that of `shadefit verify`."""
-    apart, allowed = difference(values, trial.form), trial.half_allowed
-    good = apart.within(allowed)
-    verdict = "good enough" if good else "NOT GOOD ENOUGH"
-    return (
-        f"{verdict}: rounding moves values by {text_of(apart)} "
-        f"(allowed: {allowed.largest:.2g}, {HALF_SHARE:.0%} of the largest value)"
-    )
+    good, said = verdict(trial, difference(values, trial.form))
+    return f"{'good enough' if good else 'NOT GOOD ENOUGH'}: {said}"

@@ -115,7 +115,7 @@ class CallingConvention:
         def value(*given):
             return self._limited(form(jnp.asarray(constants), *self._point(fitted, given)))
 
-        summary = self.summary.format(equation=_equation(fitted))
+        summary = _summary(self.summary, fitted)
         return function(self.name, self._parameters(fitted), value, summary)
 
     def _first(self, fitted: FittedForm) -> Function:
@@ -248,10 +248,16 @@ def renamed(functions: tuple[Function, ...], name: str) -> tuple[Function, ...]:
     return (*changed, replace(last, name=name))
 
 
-def _equation(fitted: FittedForm) -> str:
-    """Return the number of a form's equation in the supplement, ' (Eq. 3)', or nothing."""
-    found = re.fullmatch(r"Eq\. \((\d+)\)", fitted.form.equation)
-    return "" if found is None else f" (Eq. {found[1]})"
+def _summary(text: str, fitted: FittedForm) -> str:
+    """Write a form's equation, such as 'Eq. 3', into a summary.
+
+    The equation of a form of a family is long, and is in the header: here it is left out.
+    """
+    form = fitted.form
+    if form.shape is not None:
+        return text.replace(" ({equation})", "").format(equation=form.name)
+    numbered = re.fullmatch(r"Eq\. \((\d+)\)", form.equation)
+    return text.format(equation=f"Eq. {numbered[1]}" if numbered else form.equation)
 
 
 def _result_count(fitted: FittedForm) -> int:

@@ -17,6 +17,8 @@ class Quotients:
       denominator takes the first `below` of them, which are y.
     * `factor`: maps a point to the number before the quotient.
     * `offset`: a number for one quotient, or a tuple with a number for each row.
+    * `least`: a lower limit of the denominators of rows, so that none is rounded to zero in half
+      precision; None: there is no limit.
 
     A row of the coefficients holds t, then p₁ … pₘ, then q₁ … q_below.
     """
@@ -26,6 +28,7 @@ class Quotients:
     offset: float | tuple[float, ...]
     above: int
     below: int
+    least: float | None = None
 
     def __call__(self, coefficients: Array | np.ndarray, *point) -> Array:
         """Evaluate the quotient, or all rows (rows,), at one point."""
@@ -37,6 +40,8 @@ class Quotients:
         # The rows' numerators and denominators keep these names in exported code.
         numerator = c[:, 0] + c[:, 1:split] @ x
         denominator = 1 + c[:, split:] @ x[: self.below]
+        if self.least is not None:
+            denominator = jnp.maximum(denominator, self.least)
         return jnp.array(self.offset) + factor * numerator / denominator
 
     def positive(self, coefficients: Array | np.ndarray, *point) -> Array:

@@ -25,6 +25,7 @@ from programs.precision import number_type
 from programs.printing.printer import write_source
 from programs.program import Program, evaluate
 from programs.toolchains.difference import Difference, difference, text_of
+from programs.toolchains.half_precision import verdict
 from programs.toolchains.process import ToolchainError
 from programs.toolchains.registry import toolchain
 from programs.tracing.tracer import trace
@@ -33,10 +34,6 @@ from programs.tracing.tracer import trace
 SLACK = 8.0
 # In units in the last place: allowed even if every operation happens to be exact in NumPy.
 LEAST_UNITS = 4.0
-
-# Half precision is good enough if every value is finite and rounding moves none by more than this
-# part of the largest value. Values of the quantities are fractions, so it is about two per cent.
-HALF_SHARE = 0.02
 
 # Evaluates one function at rows of inputs (n, k): values (n, m)
 Run = Callable[[Function, np.ndarray], np.ndarray]
@@ -80,8 +77,8 @@ class Check:
     """The result of verifying one language.
 
     `status` is "passed", "failed", "not checked" or, only in half precision, "not good enough": the
-    code is right, but its rounding moves values too far (`Trial.half_allowed`). `reason` says why
-    the status is not "passed". `form` is the difference from the float64 program at the same
+    code is right, but its rounding moves values too far (`half_precision.verdict`). `reason` says
+    why the status is not "passed". `form` is the difference from the float64 program at the same
     rounded inputs, `units` the same in units in the last place of the program's value, and
     `allowed` the largest `form` that passes. `integral` is the difference from the exact values at
     `integral_points` points, or None if there are no exact values.
@@ -128,8 +125,12 @@ class Trial:
 
     def values(self, run: Run) -> np.ndarray:
         """Call the functions one after the other at every point; returns (n,) float64."""
-        dtype, results = PRECISIONS[self.precision], np.empty((len(self.points), 0))
-        columns = self.calls.columns(self.points)
+        return self.values_at(self.points, run)
+
+    def values_at(self, points: np.ndarray, run: Run) -> np.ndarray:
+        """Call the functions one after the other at other points; returns (n,) float64."""
+        dtype, results = PRECISIONS[self.precision], np.empty((len(points), 0))
+        columns = self.calls.columns(points)
         for function, own in zip(self.calls.functions, columns, strict=True):
             # Rounding moves no cosine out of its domain, and keeps the sign of a zero.
             rows = np.concatenate([results, own.astype(dtype).astype(np.float64)], axis=1)
@@ -142,8 +143,12 @@ class Trial:
 
     def emulated(self, dtype: type[np.floating]) -> np.ndarray:
         """Evaluate the programs in NumPy, every operation rounded to `dtype`; returns (n,)."""
-        return self.values(
-            lambda function, rows: evaluate(self.programs[function.name], rows, dtype)
+        return self.emulated_at(self.points, dtype)
+
+    def emulated_at(self, points: np.ndarray, dtype: type[np.floating]) -> np.ndarray:
+        """Evaluate the programs as `emulated` does, at other points."""
+        return self.values_at(
+            points, lambda function, rows: evaluate(self.programs[function.name], rows, dtype)
         )
 
     @cached_property
@@ -174,12 +179,6 @@ class Trial:
         if self.exact is None:
             raise ValueError("exact is None; allowed here: a function that returns exact values")
         return self.exact(self.points[: self.exact_points])
-
-    @property
-    def half_allowed(self) -> Difference:
-        """The difference from `form` with which half precision is good enough."""
-        largest = HALF_SHARE * float(np.max(np.abs(self.form)))
-        return Difference(largest, largest, 0)
 
     def against_integral(self, values: np.ndarray) -> Difference:
         """Return the difference of values (n,) from the exact values, where these are known."""
@@ -236,14 +235,17 @@ def check(trial: Trial, key: str) -> Check:
     spacing = np.spacing(np.abs(trial.form).astype(PRECISIONS[precision])).astype(np.float64)
     passed = apart.within(trial.allowed)
     known = trial.exact is not None
-    coarse = precision == "half" and not apart.within(trial.half_allowed)
-    status = "failed" if not passed else "not good enough" if coarse else "passed"
-    limit = trial.half_allowed if passed else trial.allowed
+    status, why = "passed" if passed else "failed", None
+    if not passed:
+        why = _why_failed(apart, trial.allowed)
+    elif precision == "half":
+        good, said = verdict(trial, apart)
+        status, why = ("passed", None) if good else ("not good enough", said)
     return Check(
         key,
         precision,
         status,
-        None if status == "passed" else _why_not(apart, limit),
+        why,
         chain.tool,
         chain.note,
         len(values),
@@ -255,5 +257,5 @@ def check(trial: Trial, key: str) -> Check:
     )
 
 
-def _why_not(apart: Difference, allowed: Difference) -> str:
+def _why_failed(apart: Difference, allowed: Difference) -> str:
     return f"differs from the float64 form by {text_of(apart)}; allowed: {text_of(allowed)}"

@@ -44,7 +44,7 @@ G = Problem(
     candidates=lambda _: candidates(),
     calling=CallingConvention(
         name="FuzzGApprox",
-        summary="G{equation}; clamps to the domain, and density to 0 from below.",
+        summary="G ({equation}); clamps to the domain, and density to 0 from below.",
         arguments=(
             Argument("cos_v", "NdotV", clamp="both", local="NdotV"),
             # At d = 0, G is 0 for every ν > 0: a material without a layer stays as it is, at its

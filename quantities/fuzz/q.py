@@ -57,7 +57,7 @@ Q = Problem(
     candidates=lambda _: candidates(),
     calling=CallingConvention(
         name="FuzzAveragePenetration",
-        summary="Q{equation}; clamps to the domain.",
+        summary="Q ({equation}); clamps to the domain.",
         arguments=(Argument("density", "density", clamp="both", local="density"),),
         remark="density is thickness over mean free path",
     ),

@@ -35,7 +35,7 @@ R = Problem(
     candidates=lambda lower: candidates(lower["alpha"]),
     calling=CallingConvention(
         name="FuzzAveragePs",
-        summary="R{equation}; clamps to the domain.",
+        summary="R ({equation}); clamps to the domain.",
         arguments=(
             Argument("alpha", "alpha", clamp="both", local="alpha"),
             Argument("theta_f", "thetaF", clamp="both", local="theta_f", cosine="NdotT"),

@@ -122,7 +122,8 @@ def _light_on(xyz: np.ndarray) -> np.ndarray:
     normals = np.cross(by_theta, by_phi, axis=0)
     # At the pole all meridians meet, so that the derivative by φ is zero.
     normals[:, 0] = normals[:, 1].mean(axis=1, keepdims=True)
-    normals /= np.linalg.norm(normals, axis=0)
+    # Where clamped values are 0 the surface is a point, which has no normal.
+    normals /= np.maximum(np.linalg.norm(normals, axis=0), np.finfo(float).tiny)
     from_left = np.array([-0.5, -0.6, 0.62])
     return 0.8 + 0.2 * np.tensordot(from_left, normals, axes=1)
 

@@ -389,7 +389,7 @@ def test_the_same_call_gives_the_same_bytes(few_points, name, constants):
 def test_the_header_says_when_half_is_not_good_enough(few_points):
     """The verdict is that of `shadefit verify`, and a table's own error does not matter."""
     text = header_of(source_file(resolve("published/ps"), "python", "half"), "#")
-    assert re.search(r"NOT GOOD ENOUGH: rounding moves .* \(allowed: 0.02, 2% of the largest", text)
+    assert re.search(r"NOT GOOD ENOUGH: rounding moves .* allowed: 0.02, 2% of the largest", text)
     assert check(trial("published/ps", "half"), "python").status == "not good enough"
     for name in ("q", "published/g", CLOSED_FORM):
         assert "NOT GOOD ENOUGH" not in source_file(resolve(name), "python", "half")

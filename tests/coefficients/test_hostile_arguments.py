@@ -6,12 +6,14 @@ and u·t may belong to no unit vector. All values are finite and within the codo
 
 import functools
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from coefficients.catalogue import entries, resolve
-from coefficients.exported_code import programs_of
+from coefficients.exported_code import programs_of, trial_of
+from fitting.points.grids import sobol_points
 from programs import PRECISIONS, evaluate, toolchain, write_source
 from quantities import problems
 
@@ -111,3 +113,12 @@ def test_every_half_gives_a_value_of_the_codomain(name):
     every = every[np.isfinite(every)].astype(np.float64)
     (program,) = programs_of(resolve(name), "half")
     assert_in_codomain(evaluate(program, every[:, None], np.float16).astype(np.float64))
+
+
+@pytest.mark.parametrize("name", ["published/ps", "published/ps@printed", "ps", "best/ps-40-wide"])
+def test_no_point_of_the_domain_is_lost_in_half(name):
+    """At some of these points, half precision would round a denominator of Eq. (2) to zero."""
+    entry = resolve(name)
+    points = sobol_points(entry.axes, 15, 20200718)
+    run = replace(trial_of(entry, "half", 4), points=points).emulated(np.float16)
+    assert_in_codomain(run)

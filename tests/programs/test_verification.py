@@ -319,7 +319,7 @@ def test_half_is_good_enough_if_rounding_moves_no_value_far():
     points = np.linspace(0, 1, 65)[:, None]
     result = check(Trial(CallSequence((coarse,), lambda rows: (rows,)), points, "half"), "python")
     assert result.status == "not good enough"
-    assert "allowed: rms 2.0e-02, largest 2.0e-02" in result.reason
+    assert "allowed: 0.02, 2% of the largest value" in result.reason
     fine = function("Fine", [Parameter("x", (0.0, 1.0))], lambda x: (x + 1.0) * 0.25)
     calls = CallSequence((fine,), lambda rows: (rows,))
     assert check(Trial(calls, points, "half"), "python").status == "passed"
