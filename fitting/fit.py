@@ -9,6 +9,7 @@ from fitting.form import FittedForm, Form
 from fitting.goal import LEAST_SQUARES, Goal
 from fitting.points.grids import Grid
 from fitting.points.sample import Sample
+from fitting.proofs.failing_denominator import failing_denominator
 from fitting.proofs.least_error import least_error
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
@@ -165,7 +166,7 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
     if not certificate.holds:
         raise ValueError(
             f"the fit of {form.name} has a denominator that is not shown to be positive "
-            "on its whole domain"
+            f"on its whole domain{failing_denominator(fitted)}"
         )
     values = certify_range(fitted)
     if goal.bounded and values is None:
