@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite, pi
 from typing import Any
 
@@ -12,7 +12,7 @@ from jax import Array
 from fitting.form import FittedForm, Form
 from fitting.points.scattered import scattered_points
 from fitting.proofs.largest_error import ErrorCode, difference_code
-from integrals.reference import Axis, Reference
+from integrals.reference import Axis, Reference, restricted
 from programs.functions import Function, Record
 from quantities.calling_convention import CallingConvention
 from quantities.family import Family
@@ -188,6 +188,7 @@ class Problem:
       theirs in files instead.
     * `candidates`: returns the forms that a search tries. Its argument maps the names of axes to
       the lower ends of their domains, such as {"alpha": 0.15}. None: `forms`.
+    * `search_lower`: the lower ends that `candidates` takes, with their defaults.
     * `closed_form`: the exact value in float64, as a function of the axes that can be traced; the
       report's explorer evaluates it. `exact_code`: the same for shaders.
     * `error_code`: returns the code with which the largest error of a form is proven, or None if
@@ -205,6 +206,7 @@ class Problem:
     published: Sequence[Published] = ()
     families: Mapping[str, Family] = field(default_factory=dict)
     candidates: Callable[[Mapping[str, float]], Iterator[Form]] | None = None
+    search_lower: Mapping[str, float] = field(default_factory=dict)
     closed_form: Callable[..., Array] | None = None
     error_code: Callable[[FittedForm], ErrorCode | None] | None = None
     exact_code: ExactCode | None = None
@@ -251,10 +253,18 @@ class Problem:
         return Problem(**{**own, **fields})
 
     def tried(self, lower: Mapping[str, float]) -> Iterator[Form]:
-        """Yield the forms that a search tries."""
+        """Yield the forms that a search tries; `lower` has lower ends of their axes, by name."""
         if self.candidates is not None:
             return self.candidates(lower)
-        return iter(self.forms)
+        return (self._raised(form, lower) for form in self.forms)
+
+    def _raised(self, form: Form, lower: Mapping[str, float]) -> Form:
+        """Return a form in a smaller domain: with other lower ends of some axes."""
+        if not lower:
+            return form
+        upper = {axis.name: axis.upper for axis in form.axes}
+        ends = {name: (value, upper[name]) for name, value in lower.items()}
+        return replace(form, axes=restricted(form.axes, **ends))
 
     def code_of_error(self, fitted: FittedForm) -> ErrorCode | None:
         """Return the code with which the largest error of a form is proven; None without any.

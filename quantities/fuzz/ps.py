@@ -103,6 +103,7 @@ PS = Problem(
         ),
     },
     candidates=lambda lower: candidates(lower["alpha"]),
+    search_lower={"alpha": 0.15},
     calling=CallingConvention(
         name="FuzzPs",
         summary="P_s for one direction of light.",

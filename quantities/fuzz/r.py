@@ -33,6 +33,7 @@ R = Problem(
         ),
     },
     candidates=lambda lower: candidates(lower["alpha"]),
+    search_lower={"alpha": 0.15},
     calling=CallingConvention(
         name="FuzzAveragePs",
         summary="R ({equation}); clamps to the domain.",

@@ -25,7 +25,10 @@ SETTINGS = {"ignore_unknown_options": True}
 
 
 def evaluate(
-    integral: Annotated[str, typer.Argument(help="ps, g, q, r or velvet.", metavar="INTEGRAL")],
+    integral: Annotated[
+        str,
+        typer.Argument(help="ps, g, q, r, velvet, or a quantity of -p FILE.", metavar="QUANTITY"),
+    ],
     arguments: Annotated[
         list[str] | None,
         typer.Argument(

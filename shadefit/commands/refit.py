@@ -41,7 +41,8 @@ def refit(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            help="ps, g, q, r, velvet, all of these (the default), or best/NAME.",
+            help="ps, g, q, r, velvet, all of these (the default), best/NAME, or quantities of "
+            "-p FILE (by default all of them).",
             autocompletion=complete_quantity,
         ),
     ] = None,

@@ -18,11 +18,18 @@ from shadefit.commands.options import (
 
 if TYPE_CHECKING:
     from coefficients.search import Found, Result
+    from quantities import Problem
     from shadefit.records import FoundTable
 
 
+# Below this α the built-in forms are not fitted.
+LEAST_END = 0.01
+
+
 def search(
-    quantity: Annotated[str, typer.Argument(help="ps, g, q or r.", metavar="QUANTITY")],
+    quantity: Annotated[
+        str, typer.Argument(help="ps, g, q, r, or a quantity of -p FILE.", metavar="QUANTITY")
+    ],
     budget: Annotated[
         int | None,
         typer.Option(help="Most operations that a call may have (for ps, a direction)."),
@@ -30,9 +37,14 @@ def search(
     max_error: Annotated[
         float | None, typer.Option(help="Print only forms whose largest error is at most this.")
     ] = None,
-    least_alpha: Annotated[
-        float, typer.Option(help="Least alpha of the domain of the forms of ps and r.")
-    ] = 0.15,
+    lower: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Lower end of an axis of the forms' domain, as in alpha=0.05; may be given again. "
+            "By default alpha=0.15 for ps and r.",
+            metavar="NAME=VALUE",
+        ),
+    ] = None,
     norm: Norm = None,
     side: Side = None,
     rounding: Rounding = None,
@@ -71,10 +83,10 @@ def search(
         raise ValueError(f"budget = {budget}: at least one operation is needed")
     if max_error is not None and not max_error > 0:
         raise ValueError(f"max-error = {max_error}: it must be positive")
-    if not 0.01 <= least_alpha < 1:
-        raise ValueError(f"least-alpha = {least_alpha}: allowed are 0.01 to below 1")
+    owner = known[quantity]
+    ends = {**owner.search_lower, **_lower_ends(owner, lower or [])}
     require_writable(out)
-    wanted = Search(known[quantity], goal, out, budget, {"alpha": least_alpha})
+    wanted = Search(owner, goal, out, budget, ends)
     with stages() as progress:
         line = progress.begin(quantity)
         result = wanted.run(
@@ -89,6 +101,31 @@ def search(
     else:
         limit = "" if max_error is None else f"; {len(good)} of them within {max_error:g}"
         _print(quantity, result, good, limit, drawn)
+
+
+def _lower_ends(owner: "Problem", given: list[str]) -> dict[str, float]:
+    """Read texts such as 'alpha=0.05' as lower ends of axes, by the names of the axes.
+
+    Raises ValueError for an axis that forms cannot be restricted in, and for a value outside it.
+    """
+    axes = {axis.name: axis for axis in owner.axes}
+    allowed = list(axes if owner.candidates is None else owner.search_lower)
+    found = {}
+    for text in given:
+        name, _, value = text.partition("=")
+        if name not in allowed:
+            offered = f"allowed are {', '.join(allowed)}" if allowed else "it takes none"
+            raise ValueError(f"--lower {text}: {name!r} cannot be restricted: {offered}")
+        try:
+            end = float(value)
+        except ValueError:
+            raise ValueError(f"--lower {text}: {value!r} is no number") from None
+        axis = axes[name]
+        least = max(axis.lower, LEAST_END if owner.topic else axis.lower)
+        if not least <= end < axis.upper:
+            raise ValueError(f"--lower {text}: allowed are {least:g} to below {axis.upper:g}")
+        found[name] = end
+    return found
 
 
 def _print_json(quantity: str, result: "Result", good: "list[Found]") -> None:

@@ -67,17 +67,20 @@ def test_a_search_for_r_begins_with_the_forms_of_the_best_tables(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("s", None, None, 0.15), "no forms are known of 's'"),
-        (("q", 0, None, 0.15), "budget = 0"),
-        (("q", None, -1.0, 0.15), "max-error = -1.0"),
-        (("r", None, None, 1.5), "least-alpha = 1.5"),
-        (("q", 1, None, 0.15), "no form of q"),
+        (("s", None, None, None), "no forms are known of 's'"),
+        (("q", 0, None, None), "budget = 0"),
+        (("q", None, -1.0, None), "max-error = -1.0"),
+        (("r", None, None, ["alpha=1.5"]), "--lower alpha=1.5: allowed are 0.01 to below 1"),
+        (("r", None, None, ["alpha=x"]), "--lower alpha=x: 'x' is no number"),
+        (("r", None, None, ["beta=1"]), "'beta' cannot be restricted: allowed are alpha"),
+        (("q", None, None, ["density=0.1"]), "'density' cannot be restricted: it takes none"),
+        (("q", 1, None, None), "no form of q"),
     ],
 )
 def test_what_cannot_be_searched_is_refused_in_one_line(tmp_path, arguments, message):
-    quantity, budget, max_error, least_alpha = arguments
+    quantity, budget, max_error, lower = arguments
     with pytest.raises(ValueError, match=message) as caught:
-        search(quantity, budget, max_error, least_alpha, norm="l2", out=tmp_path, json=True)
+        search(quantity, budget, max_error, lower, norm="l2", out=tmp_path, json=True)
     assert "\n" not in str(caught.value)
     assert not list(tmp_path.iterdir())
 
