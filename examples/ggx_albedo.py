@@ -1,6 +1,5 @@
 """Directional albedo of GGX, E(μ, α) = ∫ f (l·n) dl with Smith's height-correlated masking.
 
-shadefit evaluate -p examples/ggx_albedo.py ggx-albedo --mu 0.5 --alpha 0.3
 shadefit refit -p examples/ggx_albedo.py --norm linf --rounding float16 --out /tmp/tables
 shadefit compare -p examples/ggx_albedo.py /tmp/tables/ggx-albedo.json
 shadefit export -p examples/ggx_albedo.py /tmp/tables/ggx-albedo.json --to glsl

@@ -286,7 +286,7 @@ def make_reference(
         closed_form=legs.get("closed_form"),
         quadrature=legs.get("quadrature"),
         monte_carlo=legs.get("monte_carlo"),
-        codomain=codomain,
+        codomain=(float(codomain[0]), float(codomain[1])),
         data=data,
     )
 

@@ -164,11 +164,13 @@ def test_coefficients_of_the_best_tables_are_float32(name):
 def test_no_error_is_below_the_least_that_is_proven_possible(name):
     table = resolve(name).require_table()
     least = table.certificates.least_error
-    assert (least is not None) == name.startswith("best/r-")
+    of_q = name in ("best/q-5", "best/q-12-log")
+    assert (least is not None) == (of_q or name.startswith("best/r-"))
     if least is not None:
         assert least <= table.errors.on_grid.max * (1 + 1e-9)
-        # As README says: the forms of R can have no error that is smaller by 3 %.
-        assert 0.97 * table.errors.off_grid.max < least <= table.errors.off_grid.max * (1 + 1e-9)
+        # As README says: their forms can have no error that is smaller by 0.2 %, those of R by 3 %.
+        part = 0.998 if of_q else 0.97
+        assert part * table.errors.off_grid.max < least <= table.errors.off_grid.max * (1 + 1e-9)
 
 
 def test_which_tables_are_not_proven_to_be_between_zero_and_one():

@@ -6,8 +6,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from fitting import Goal
-from fitting.fit import fit
+from coefficients.catalogue import Entry, resolve
+from coefficients.exported_code import operations_of
+from fitting import Goal, judge
+from fitting.fit import Fit, fit
 from quantities.loader import load_problems
 from quantities.registry import unregister
 
@@ -42,8 +44,60 @@ def test_the_average_reflectance_is_exact(fresnel):
     assert np.all(np.abs(np.asarray(found.value) - exact) <= np.asarray(found.error) + 1e-15)
 
 
+def fitted(problem: str, form: str, **goal) -> Fit:
+    (found,) = load_problems(str(EXAMPLES / problem))
+    unregister(found.name)
+    return fit(found.find_form(form), Goal(**goal))
+
+
 @pytest.mark.slow
-def test_a_quotient_of_the_average_reflectance_has_an_error_of_two_ten_thousandths(fresnel):
-    made = fit(fresnel.default, Goal("linf"))
-    assert made.off_grid.largest < 2.3e-4
-    assert made.certificate.holds
+def test_a_quotient_of_the_average_reflectance_has_an_error_below_one_ten_thousandth(fresnel):
+    made = fit(fresnel.find_form("rational-3-1"), Goal("linf"))
+    assert made.off_grid.largest < 1.0e-4
+    assert made.least_error > 0.999 * made.off_grid.largest
+    entry = Entry("made", "file", fresnel, None, made.fitted)
+    assert operations_of(entry) == 11
+    published = judge(resolve("published/fresnel").require_fitted())
+    assert published.largest == pytest.approx(6.5e-3, rel=0.02)
+
+
+@pytest.mark.slow
+def test_a_quotient_of_the_albedo_of_ggx_is_better_than_the_published_one():
+    made = fitted("ggx_albedo.py", "biquadratic", norm="linf", rounding="float16")
+    assert made.fitted.form.size == 17
+    assert made.off_grid.largest < 1.15e-2
+    assert np.all(np.abs(made.fitted.constants) < 60)
+
+
+def test_the_albedo_of_ggx_is_exact():
+    """1 − μ ln(1 + 1/μ) at α = 1, and 30-digit values of the same integral elsewhere."""
+    (problem,) = load_problems(str(EXAMPLES / "ggx_albedo.py"))
+    unregister(problem.name)
+    points = np.array([[0.5, 1.0], [0.02, 1.0], [1.0, 1.0]])
+    exact = 1 - points[:, 0] * np.log1p(1 / points[:, 0])
+    np.testing.assert_allclose(problem.reference.values(points), exact, rtol=0, atol=1e-12)
+
+
+def test_the_measured_albedo_agrees_with_the_integral_within_its_standard_errors():
+    (measured,) = load_problems(str(EXAMPLES / "albedo.py"))
+    (exact,) = load_problems(str(EXAMPLES / "ggx_albedo.py"))
+    for each in (measured, exact):
+        unregister(each.name)
+    data = measured.reference.data
+    rows = slice(0, 100)
+    apart = (data.values[rows] - exact.reference.values(data.points[rows])) / data.sigma[rows]
+    assert abs(apart.mean()) < 0.4  # Four standard errors of a mean of 100
+    assert 0.7 < apart.std() < 1.3
+
+
+def test_every_form_of_the_measured_albedo_is_fitted():
+    (problem,) = load_problems(str(EXAMPLES / "albedo.py"))
+    unregister(problem.name)
+    rms = [fit(form).off_grid.rms for form in problem.forms]
+    assert rms == sorted(rms, reverse=True)
+    assert rms[-1] < 1e-2
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
+def test_an_example_is_short(path):
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 60
