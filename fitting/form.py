@@ -25,13 +25,21 @@ class Stage:
     called with the results of the first, and with its own arguments, which `Form.inputs` computes.
     `summary` is a line for the comments of exported code that describes the stage. In that code the
     array of a first stage's results is called `result_name`, and the clamped arguments of a second
-    stage have the names `arguments`; None leaves the choice to the printer.
+    stage have the names `arguments`; None leaves the choice to the printer. `limited` is the same
+    function with limits of denominators and radicands that change no value on the domain. Exported
+    code has them, so that it is finite elsewhere and in half precision; fits and proofs do not.
     """
 
     call: Callable[..., Any]
     summary: str = ""
     result_name: str = "c"
     arguments: tuple[str, ...] | None = None
+    limited: Callable[..., Any] | None = None
+
+    @property
+    def exported(self) -> Callable[..., Any]:
+        """The function that is exported: with limits if the stage has them."""
+        return self.call if self.limited is None else self.limited
 
 
 def unguarded(*_) -> Array:

@@ -123,7 +123,8 @@ class CallingConvention:
         count = _result_count(fitted)
 
         def results(*given):
-            return tuple(form.first(jnp.asarray(constants), *self._clamped(fitted, given)))
+            exported = form.stages[0].exported
+            return tuple(exported(jnp.asarray(constants), *self._clamped(fitted, given)))
 
         summary = form.stages[0].summary.format(name=self.name)
         name, result_name, record = f"Calc{self.name}Coeffs", form.stages[0].result_name, None
@@ -136,7 +137,7 @@ class CallingConvention:
 
     def _second(self, fitted: FittedForm) -> Function:
         stage, largest = fitted.form.stages[1], _largest_result(fitted)
-        call = stage.call
+        call = stage.exported
 
         def value(results, *inputs):
             return self._limited(call(results, *self._directed(inputs, stage.arguments)))

@@ -47,12 +47,14 @@ def material_form(
     along: Callable[..., Array],
     proofs: DirectionProofs,
     notation: str = "",
+    limited: Callable[..., Array] | None = None,
 ) -> Form:
     """Return a form of P_s of two stages, for α ≥ `least_alpha`.
 
     `material` is the first stage, which maps the coefficients, α and θf to numbers m. `along` is
-    the second, which maps m, u·n and u·t to the value. Proofs have the axis cos φ in place of φ:
-    P_s depends on φ only through cos φ, which has each value only once in [−1, 1].
+    the second, which maps m, u·n and u·t to the value; `limited` is the same for exported code
+    (`Stage.limited`). Proofs have the axis cos φ in place of φ: P_s depends on φ only through
+    cos φ, which has each value only once in [−1, 1].
     """
     axes = restricted(PS.axes, alpha=(least_alpha, 1.0))
 
@@ -81,7 +83,10 @@ def material_form(
                 result_name="m",
             ),
             Stage(
-                along, "P_s for one direction of light; clamps to the domain.", arguments=("c", "a")
+                along,
+                "P_s for one direction of light; clamps to the domain.",
+                arguments=("c", "a"),
+                limited=limited,
             ),
         ),
         shared=2,

@@ -61,12 +61,11 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         return m[2] + m[3] * c + curved
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
+        return 0.5 + _above(m, cos_un, cos_ut) / jnp.sqrt(radicand(m, cos_un, cos_ut))
+
+    def limited(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
         r = jnp.maximum(radicand(m, cos_un, cos_ut), LEAST)
         return 0.5 + _above(m, cos_un, cos_ut) / jnp.sqrt(r)
-
-    def unlimited(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        """Return the form without the lower limit of its radicand."""
-        return 0.5 + _above(m, cos_un, cos_ut) / jnp.sqrt(radicand(m, cos_un, cos_ut))
 
     def margins(m: tuple, _: Scalar, cos_un: Scalar, cos_ut: Scalar) -> tuple[Array, ...]:
         """Return r − 4N², where the form is ½ + N/√r (docs/range.md)."""
@@ -88,7 +87,8 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         starts=(flat_start(values, degree, {3: (1.0, 1.7)}),),
         material=material,
         along=along,
-        proofs=DirectionProofs(unlimited, margins, radicand),
+        limited=limited,
+        proofs=DirectionProofs(along, margins, radicand),
         notation="; the radicand is r",
     )
 

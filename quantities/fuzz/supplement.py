@@ -71,8 +71,9 @@ RATIONAL_PS = Form(
     coefficient_names=[[f"c{i}: {name}" for name in _ROW_NAMES] for i in range(6)],
     stages=(
         Stage(
-            LIMITED_PS_ROWS,
+            PS_ROWS,
             "Coefficients c of {name} for one material (Eq. 2); clamps to the domain.",
+            limited=LIMITED_PS_ROWS,
         ),
         Stage(
             _combined,
@@ -82,7 +83,6 @@ RATIONAL_PS = Form(
     shared=2,
     inputs=cosines_of_light,
     proofs=Proofs(
-        value=lambda c, *point: _combined(PS_ROWS(c, *point[:2]), *cosines_of_light(*point)),
         positive=lambda c, alpha, theta_f, *_: PS_ROWS.positive(c, alpha, theta_f),
         first_split=(64, 8),
     ),

@@ -100,7 +100,7 @@ def test_the_summary_says_what_was_measured(monkeypatch):
     assert "Q = (1/π) ∫Ω exp(−d/(u·n))" in text
     row = cells.index("q")
     assert cells[row + 1 : row + 8] == [
-        *("Eq. (4)", "2", "5", "4.000e-03", "0.4", "3.000e-02", "1.5"),
+        *("Eq. (4)", "2", "6", "4.000e-03", "0.4", "3.000e-02", "1.5"),
     ]
     assert cells[row + 8] == "; ".join(proof_text(table("q").certificates))
 
