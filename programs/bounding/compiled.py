@@ -20,7 +20,7 @@ _FASTER = ("-march=native", "-fno-math-errno")
 # Seconds. A program of two thousand steps takes about a minute.
 _COMPILE_LIMIT = 600.0
 
-FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING = range(5)
+FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING, REFUTED = range(6)
 
 
 def compiler_missing() -> str | None:

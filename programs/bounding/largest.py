@@ -19,6 +19,7 @@ from programs.bounding.branch_and_bound import BranchAndBound
 from programs.bounding.compiled import (
     BUDGET,
     FINISHED,
+    REFUTED,
     ROUNDING,
     STACK_FULL,
     Kernel,
@@ -202,7 +203,7 @@ class _Worker:
     @property
     def failed(self) -> bool:
         """Whether the search cannot go on."""
-        return self.state.status not in (FINISHED, BUDGET, STACK_FULL)
+        return self.state.status not in (FINISHED, BUDGET, STACK_FULL, REFUTED)
 
     def found(self, lower: float, at: Sequence[float]) -> None:
         """Take note of an error that another search has found."""
@@ -239,7 +240,7 @@ def _share(workers: Sequence[_Worker]) -> None:
     """Tell all threads the largest error that one has found, and give idle ones half a stack."""
     best = max(workers, key=_lower).state
     for worker in workers:
-        worker.found(best.lower, best.at)
+        worker.found(best.lower, tuple(best.at))
         richest = max(workers, key=lambda each: each.state.depth)
         if worker.state.depth == 0 and richest.state.depth > 1:
             # The bottom of a stack has the largest boxes.

@@ -67,7 +67,7 @@ def test_a_largest_error_below_its_own_point_is_refused():
     data = data_of("q")
     at = {"density": 0.5}
     data["certificates"]["largest_error"] = {"lower": 0.2, "at": at, "upper": 0.1, "boxes": 7}
-    with pytest.raises(ValueError, match="at least 0.2 and at most 0.1"):
+    with pytest.raises(ValueError, match=r"at least 0\.2 and at most 0\.1"):
         parse(json.dumps(data), "q")
 
 
