@@ -261,11 +261,16 @@ KNOWN = {
 }
 
 
+@functools.cache
+def known(name: str):
+    return kernel_of(KNOWN[name][0], len(KNOWN[name][1]))
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("name", KNOWN)
 def test_the_largest_value_is_found_and_bounded(name, threads):
     call, box, exact = KNOWN[name]
-    found = bound_largest(kernel_of(call, len(box)), np.array(box, float), 1.001, threads=threads)
+    found = bound_largest(known(name), np.array(box, float), 1.001, threads=threads)
     assert found.lower <= exact * (1 + 1e-6) and found.upper >= exact * (1 - 1e-6)
     assert found.lower <= found.upper <= 1.0011 * found.lower
     value = abs(float(call(*found.at)))
@@ -283,7 +288,7 @@ def test_the_search_in_python_agrees(name):
 
 def test_a_claim_is_proven_or_refuted_with_a_point():
     call, box, exact = KNOWN["narrow"]
-    kernel = kernel_of(call, 2)
+    kernel = known("narrow")
     proven = bound_largest(kernel, np.array(box, float), 1.01, claim=1.0001)
     assert exact <= proven.upper <= 1.0001
     refuted = bound_largest(kernel, np.array(box, float), 1.01, claim=0.999)
