@@ -11,7 +11,7 @@
 #define HALF_PI_SECOND 0x1.0b4611a6p-34
 #define HALF_PI_REST between(0x1.3198a2e037073p-69, 0x1.3198a2e037074p-69)
 #define HALF_PI between(0x1.921fb54442d18p+0, 0x1.921fb54442d19p+0)
-/* A sum with this number is rounded to a whole number. */
+/* A sum with this number is rounded up to a whole number. */
 #define WHOLE 0x1.8p52
 
 INLINE V as_real(M a) { return __builtin_convertvector(a, V); }
@@ -24,6 +24,8 @@ INLINE V vceil(V x) {
     V t = as_real(as_whole(x));
     return t + pick(t < x, all(1), all(0));
 }
+/* The whole number that is nearest to x, but for rounding, while the processor rounds upward */
+INLINE V nearest(V x) { return ((x - 0.5) + WHOLE) - WHOLE; }
 INLINE iv idivide(iv a, double k) { return (iv){a.n / k, a.h / k}; }
 INLINE iv over_odd(int k) { return pdiv(number(1), number(k)); }
 
@@ -37,7 +39,7 @@ static iv exp_at(boxes *K, V x) {
     M fine = (x > -700) & (x < 700);
     K->bad |= ~fine;
     x = pick(fine, x, all(0));
-    V k = (x * 0x1.71547652b82fep+0 + WHOLE) - WHOLE;
+    V k = nearest(x * 0x1.71547652b82fep+0);
     iv r = isub(isub(point(x), point(k * LN2_FIRST)), iscale(LN2_REST, k));
     iv p = exp_series(r, 0);
     V power = (V)((as_whole(k) + 1023) << 52);
@@ -99,7 +101,7 @@ static iv cos_at(boxes *K, V x) {
     M fine = (x > -1000) & (x < 1000);
     K->bad |= ~fine;
     x = pick(fine, x, all(0));
-    V k = (x * 0x1.45f306dc9c883p-1 + WHOLE) - WHOLE;
+    V k = nearest(x * 0x1.45f306dc9c883p-1);
     iv r = isub(isub(point(x), point(k * HALF_PI_FIRST)), point(k * HALF_PI_SECOND));
     r = isub(r, iscale(HALF_PI_REST, k));
     iv z = isquare(r), s = between(0.99, 1.0), c = s, one = number(1);
