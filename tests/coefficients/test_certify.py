@@ -13,9 +13,9 @@ from programs.bounding.compiled import compiler_missing
 
 pytestmark = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
 
-QUICK = ["q", "velvet", "best/q-4", "best/q-9", "best/q-12-log", "best/g-9"]
+QUICK = ["q", "velvet", "best/q-4", "best/q-9", "best/q-12-log"]
 SLOW = ["g", "best/q-5", "best/q-12"] + [
-    name for name in names_of_best() if name.startswith("best/g-") and name != "best/g-9"
+    name for name in names_of_best() if name.startswith("best/g-")
 ]
 
 

@@ -136,7 +136,8 @@ MP = {
     "lt": lambda a, b: a < b,
     "select": lambda which, a, b: a if which else b,
 }
-PS = ["best/ps-11", "best/ps-21", "best/ps-25", "best/ps-36-wide", "best/ps-40", "best/ps-61-wide"]
+PS = ["best/ps-11", "best/ps-21", "best/ps-40", "best/ps-61-wide"]
+SLOW_PS = ["best/ps-25", "best/ps-36-wide", "best/ps-40-wide", "best/ps-49-wide", "ps"]
 
 
 def exactly(call, names: tuple[str, ...], values, results: int | None = None):
@@ -156,7 +157,7 @@ def root_of(p, r, m):
     return (low + high) / 2
 
 
-@pytest.mark.parametrize("name", [*PS, "best/ps-40-wide", "best/ps-49-wide", "ps"])
+@pytest.mark.parametrize("name", [*PS, *(pytest.param(n, marks=pytest.mark.slow) for n in SLOW_PS)])
 def test_the_factored_error_of_p_s_is_the_error_of_the_form(name):
     """The form minus the closed form as it stands, to 40 digits, at random points of the domain."""
     fitted = resolve(name).require_fitted()

@@ -159,20 +159,18 @@ def test_functions_are_enclosed_and_tightly_at_points(name):
 def faulty() -> Kernels:
     skipped = ("not a number", "divisor a constant 0", "quotient of constants")
     calls = {}
-    for (fault, call), (hidden, hide) in itertools.product(FAULTS.items(), HIDDEN.items()):
+    for (fault, call), hidden in itertools.product(FAULTS.items(), ("as it is", "cut to a range")):
         # Constants are folded when the code is printed; a program with such is never compiled.
-        folded = fault in skipped or "constant" in fault or "fold" in fault or "zero" in hidden
-        if not folded:
+        if not (fault in skipped or "constant" in fault or "fold" in fault):
+            hide = HIDDEN[hidden]
             calls[f"{fault}, {hidden}"] = lambda x, y, c=call, h=hide: h(c(x, y), x, y)
     return Kernels(calls, 2)
 
 
 def test_a_box_with_a_fault_has_no_bounds():
     kernels = faulty()
-    assert len(kernels.places) > 60
+    assert len(kernels.places) > 30
     for name in kernels.places:
-        if "below" in name or "not selected" in name:
-            continue
         assert not np.isfinite(kernels(name, *BOX.T)[:2]).any(), name
 
 
