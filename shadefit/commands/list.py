@@ -31,12 +31,14 @@ def list_tables(json: Json = False) -> None:
             ]
             for name, table in tables.items()
         ],
-        "Errors as the table states them, off the grid; 'compare' measures published ones.",
+        "Errors as the table states them, off the grid; 'compare' measures published ones. Those "
+        "with ≤ are proven.",
     )
 
 
 def _record(name: str, table: "Table") -> dict:
     errors = table.errors.off_grid if table.errors else None
+    proven = table.certificates.largest_error if table.certificates else None
     return {
         "name": name,
         "quantity": table.quantity,
@@ -44,10 +46,16 @@ def _record(name: str, table: "Table") -> dict:
         "equation": table.equation,
         "rms": errors.rms if errors else None,
         "max": errors.max if errors else None,
+        **({"proven_max": proven.upper} if proven else {}),
     }
 
 
 def _errors(table: "Table") -> list[str]:
+    from coefficients.proof_text import rounded_up
+
     if table.errors is None:
         return ["—", "—"]
-    return [f"{table.errors.off_grid.rms:.3e}", f"{table.errors.off_grid.max:.3e}"]
+    proven = table.certificates.largest_error if table.certificates else None
+    measured = f"{table.errors.off_grid.max:.3e}"
+    largest = f"≤ {rounded_up(proven.upper, 4)}" if proven else measured
+    return [f"{table.errors.off_grid.rms:.3e}", largest]
