@@ -56,6 +56,10 @@ def _larger(a: Jet, b: Jet) -> Jet:
     return Jet(value, centre, united, a.radii).tightened()
 
 
+def _negative(a: Jet) -> Jet:
+    return a.chain(-a.value, -a.centre, IV.mpf(-1))
+
+
 def _product(a: Jet, b: Jet) -> Jet:
     value = a.value**2 if a is b else a.value * b.value
     return _combined(a, b, value, a.centre * b.centre, (b.value, a.value))
@@ -74,33 +78,43 @@ OPERATIONS = {
     "sub": _sum(-1),
     "mul": _product,
     "div": _divide,
-    "neg": lambda a: a.chain(-a.value, -a.centre, IV.mpf(-1)),
+    "neg": _negative,
     "exp": lambda a: a.chain(IV.exp(a.value), IV.exp(a.centre), IV.exp(a.value)),
     "log": lambda a: a.chain(IV.log(a.value), IV.log(a.centre), 1 / a.value),
     "sqrt": lambda a: a.chain(
         IV.sqrt(a.value), IV.sqrt(a.centre), 1 / (IV.sqrt(a.value) + IV.sqrt(a.centre))
     ),
     "max": _larger,
+    "min": lambda a, b: _negative(_larger(_negative(a), _negative(b))),
 }
 
 
-def bounds(program: Program, box) -> tuple[float, float]:
-    """Bound the only output of a program on a box (inputs, 2) of numbers."""
+def variables(box) -> list[Jet]:
+    """Return a jet for each side of a box (sides, 2)."""
     sides = [(IV.mpf(float(low)), IV.mpf(float(high))) for low, high in box]
-    centres = [(low + high) / 2 for low, high in sides]
-    centres = [IV.mpf(c.mid) for c in centres]
+    centres = [IV.mpf(((low + high) / 2).mid) for low, high in sides]
     radii = tuple(
         max((high - c).b, (c - low).b) for (low, high), c in zip(sides, centres, strict=True)
     )
     unit = [tuple(IV.mpf(int(j == k)) for j in range(len(sides))) for k in range(len(sides))]
-    inputs = [
+    return [
         Jet(IV.mpf([low.a, high.b]), c, g, radii)
         for (low, high), c, g in zip(sides, centres, unit, strict=True)
     ]
-    zeros = tuple(IV.mpf(0) for _ in sides)
+
+
+def evaluated(program: Program, inputs: list[Jet]) -> tuple[Jet, ...]:
+    """Evaluate a program with jets."""
+    like = inputs[0]
+    zeros = tuple(IV.mpf(0) for _ in like.radii)
 
     def constant(x: float) -> Jet:
-        return Jet(IV.mpf(x), IV.mpf(x), zeros, radii)
+        return Jet(IV.mpf(x), IV.mpf(x), zeros, like.radii)
 
-    (found,) = interpret(program, inputs, OPERATIONS, constant)
+    return interpret(program, inputs, OPERATIONS, constant)
+
+
+def bounds(program: Program, box) -> tuple[float, float]:
+    """Bound the only output of a program on a box (inputs, 2) of numbers."""
+    (found,) = evaluated(program, variables(box))
     return float(found.value.a), float(found.value.b)
