@@ -126,6 +126,9 @@ FUNCTIONS = {
     "floor": (jnp.floor, mpmath.floor, (-9, 9)),
     "ceil": (jnp.ceil, mpmath.ceil, (-9, 9)),
     "power": (lambda x: jnp.power(x, 2.3), lambda x: x ** mpmath.mpf(2.3), (0.1, 9)),
+    "power at zero": (lambda x: jnp.power(x, 2.3), lambda x: x ** mpmath.mpf(2.3), (0, 2)),
+    "root at zero": (lambda x: jnp.power(x, 0.4), lambda x: x ** mpmath.mpf(0.4), (0, 2)),
+    "tiny exponential": (jnp.exp, mpmath.exp, (-2000, -600)),
     "angle": (lambda x: jnp.arctan2(x - 1, x), lambda x: mpmath.atan2(x - 1, x), (0.1, 9)),
 }
 
@@ -140,8 +143,8 @@ def test_functions_are_enclosed_and_tightly_at_points(name):
     _, exact, (low, high) = FUNCTIONS[name]
     rng = np.random.default_rng(5)
     with mpmath.workdps(40):
-        for _ in range(150):
-            x = rng.uniform(low, high)
+        for k in range(150):
+            x = rng.uniform(low, high) if k else float(low)
             y = min(x + rng.choice([0.0, 1e-9, 0.01, 0.5]), high)
             bounds = functions()(name, x, y)
             for at in (x, y, rng.uniform(x, y)):
@@ -255,6 +258,7 @@ KNOWN = {
     "two sides": (lambda x, y: x * x - y * y + x * y / 2, [(-1, 1), (-1, 2)], 4.25),
     "narrow": (lambda x, y: 1 / (1 + 1e4 * ((x - 0.3) ** 2 + (y - 0.7) ** 2)), [(0, 1), (0, 1)], 1),
     "kink": (lambda x, y: jnp.maximum(x, y) - jnp.abs(x - 0.5), [(0, 1), (0, 1)], 1.0),
+    "power": (lambda x: jnp.power(x, 2.5) - jnp.power(x, 0.5), [(0, 1)], 0.8 * 0.2**0.25),
     "three sides": (lambda x, y, z: x * y * z - (x + y + z) / 3, [(0, 1)] * 3, 2 / 3),
 }
 
