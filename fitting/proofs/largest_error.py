@@ -18,6 +18,7 @@ from programs.bounding.largest import LargestValue, Report, bound_largest, bound
 from programs.functions import Function, Parameter
 from programs.printing.printer import write_source
 from programs.program import Program
+from programs.toolchains.process import ToolchainError
 
 # A positive bound of denominators that need not be improved
 ENOUGH = 1e-6
@@ -122,7 +123,10 @@ def certify_largest_error(
             raise ValueError(f"the proof needs a C compiler: {reason}")
         slow = bound_largest_slowly(code.program, code.box, ratio, seeds=starts)
         return _of_form(fitted, code, slow)
-    kernel = code.kernel()
+    try:
+        kernel = code.kernel()
+    except ToolchainError as error:
+        raise ValueError(f"{error.summary}: allowed is gcc or a compiler like it") from error
     if claim is not None:
         claim -= code.inexact
 

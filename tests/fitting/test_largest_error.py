@@ -12,6 +12,7 @@ from fitting import form_values
 from fitting.form import traced
 from fitting.proofs import largest_error
 from fitting.proofs.largest_error import certify_largest_error, difference_code
+from programs.bounding import compiled
 from programs.bounding.compiled import compiler_missing
 from programs.bounding.largest import bound_largest
 from programs.functions import Function, Parameter
@@ -19,7 +20,7 @@ from programs.program import interpret
 from programs.tracing.tracer import trace
 from quantities import problem
 from quantities.fuzz import ps_error
-from tests.fitting.toys import AXES, PLANE, QUOTIENT, TOY
+from tests.fitting.toys import AXES, PLANE, QUOTIENT, TOY, toy_form
 from tests.programs.interval_jets import bounds
 
 needs_compiler = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
@@ -77,6 +78,28 @@ def test_without_a_compiler_a_slow_search_proves_the_same(monkeypatch):
     assert sampled(FITTED) <= found.upper <= 1.06 * sampled(FITTED)
     with pytest.raises(ValueError, match="needs a C compiler: gcc is not on PATH"):
         certify_largest_error(FITTED, code, 1.05, MIDDLE, claim=1.0)
+
+
+@needs_compiler
+def test_a_compiler_that_fails_is_one_line(monkeypatch):
+    monkeypatch.setattr(compiled, "_FLAGS", ("-no-such-option",))
+    with pytest.raises(ValueError, match=r"^the search in interval arithmetic does not compile.*$"):
+        certify_largest_error(FITTED, difference_code(FITTED, exact, 1e-15), 1.01, MIDDLE)
+
+
+@needs_compiler
+def test_a_compiler_that_does_not_know_the_processor_is_enough(monkeypatch):
+    monkeypatch.setattr(compiled, "_FASTER", ("-march=no-such-processor",))
+    found = certify_largest_error(FITTED, difference_code(FITTED, exact, 1e-15), 1.05, MIDDLE)
+    assert sampled(FITTED) <= found.upper <= 1.06 * sampled(FITTED)
+
+
+@needs_compiler
+def test_a_radicand_that_is_zero_on_the_boundary_is_proven_defined_first():
+    form = toy_form(lambda c, x, y: jnp.sqrt(1 - x * x) + c[0] + 0 * y, ["a"])
+    fitted = form.fitted(np.array([0.3]))
+    found = certify_largest_error(fitted, difference_code(fitted, exact, 1e-15), 1.01, MIDDLE)
+    assert sampled(fitted) <= found.upper <= 1.02 * sampled(fitted)
 
 
 # Replay
