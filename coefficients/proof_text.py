@@ -3,6 +3,7 @@
 import math
 
 from coefficients.catalogue import Entry
+from coefficients.rounded_text import rounded_down, rounded_up
 from coefficients.table import Certificates
 from fitting import FittedForm
 from fitting.fit import ENOUGH
@@ -51,7 +52,7 @@ def proof_text(certificates: Certificates | None) -> list[str]:
     if certificates is None:
         return []
     bound, values = certificates.denominator_bound, certificates.range
-    found = ["no denominator" if bound is None else f"denominators ≥ {_below(bound, 3)}"]
+    found = ["no denominator" if bound is None else f"denominators ≥ {rounded_down(bound, 3)}"]
     if values is not None:
         # A bound just outside of [0, 1] is so by the rounding of the proof.
         low, high = (round(end) if abs(end - round(end)) <= _ROUNDING else end for end in values)
@@ -60,23 +61,8 @@ def proof_text(certificates: Certificates | None) -> list[str]:
     if (certificates.conservative_bound or 0) > 0:
         found.append("none above the exact value")
     if certificates.largest_error is not None:
-        found.append(f"errors ≤ {_above(certificates.largest_error.upper, 4)}")
+        found.append(f"errors ≤ {rounded_up(certificates.largest_error.upper, 4)}")
     if certificates.least_error is not None:
-        least = _below(certificates.least_error, 3)
+        least = rounded_down(certificates.least_error, 3)
         found.append(f"no coefficients have a largest error below {least}")
     return found
-
-
-def _below(value: float, digits: int) -> str:
-    """Write a positive number with some digits, rounded down."""
-    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    return f"{math.floor(value / unit) * unit:.{digits}g}"
-
-
-def _above(value: float, digits: int) -> str:
-    """Write a number that is not negative with some digits, rounded up."""
-    if value == 0:
-        return "0"
-    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    text = f"{math.ceil(value / unit) * unit:.{digits}g}"
-    return text if float(text) >= value else f"{(math.ceil(value / unit) + 1) * unit:.{digits}g}"

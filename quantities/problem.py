@@ -1,6 +1,7 @@
 """`Problem`, the object that holds all about a quantity, and the objects that it consists of."""
 
 import dataclasses
+import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, pi
@@ -192,7 +193,8 @@ class Problem:
     * `closed_form`: the exact value in float64, as a function of the axes that can be traced; the
       report's explorer evaluates it. `exact_code`: the same for shaders.
     * `error_code`: returns the code with which the largest error of a form is proven, or None if
-      there is none for this form. None: the difference from `closed_form`.
+      there is none for this form. None: the difference from `closed_form`, or from
+      the closed form of the reference.
     * `plot`: how the quantity is drawn; None stands for default hints.
     * `topic`: the folder below `coefficients/tables` that has the tables of the quantity; a user's
       quantity has none.
@@ -269,15 +271,24 @@ class Problem:
     def code_of_error(self, fitted: FittedForm) -> ErrorCode | None:
         """Return the code with which the largest error of a form is proven; None without any.
 
-        Raises ValueError if the closed form has an operation that is not known.
+        The exact value is `closed_form`, or else the closed form of the reference. Raises
+        ValueError if it consists of other operations than those of a program.
         """
         if self.error_code is not None:
             return self.error_code(fitted)
-        if self.closed_form is None:
+        exact, leg = self.closed_form, self.reference.closed_form
+        if exact is None and leg is not None:
+            # Without the check of the domain, which returns NaN outside
+            bare = inspect.unwrap(leg)
+
+            def exact(*point):
+                return bare(*point).value
+
+        if exact is None:
             return None
         points = scattered_points(self.reference, fitted.axes, _PROBES, _PROBES)
         stated = float(np.max(self.reference.estimates(points).error))
-        return difference_code(fitted, self.closed_form, stated)
+        return difference_code(fitted, exact, stated)
 
     def has_form(self, name: str, shape: dict[str, Any] | None) -> bool:
         """Return whether there is a form, or for a shape a family, with this name."""

@@ -12,6 +12,7 @@ import typer
 
 from shadefit.commands.ambient import ambient
 from shadefit.commands.bake import bake
+from shadefit.commands.certify import certify
 from shadefit.commands.compare import compare
 from shadefit.commands.cost import cost
 from shadefit.commands.evaluate import SETTINGS, evaluate
@@ -115,6 +116,12 @@ _add(
     "shadefit export exact/ps --to hlsl --precision half",
 )
 _add("verify", verify, "Example: shadefit verify ps exact/ps --to wgsl --precision all")
+_add(
+    "certify",
+    certify,
+    "Examples: shadefit certify best/q-9 best/g-17; shadefit certify all --out /tmp/tables; "
+    "shadefit certify best/ps-11 --at-most 0.07",
+)
 _add("cost", cost, "Example: shadefit cost ps --throughput")
 _add("figures", figures, "Example: shadefit figures figure-5 frontier --out /tmp/figures")
 _add(

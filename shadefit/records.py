@@ -167,6 +167,30 @@ class VerifiedTable(TableRecord):
     checks: list[CheckRecord]
 
 
+class LargestErrorRecord(_Part):
+    """What is proven of a largest error.
+
+    It is at least `lower`, at the point `at`, and at most
+    `upper`, which is null if that is not proven. `boxes` were examined.
+    """
+
+    lower: Size
+    at: Place
+    upper: Size | None
+    boxes: Count
+
+
+class CertifiedTable(TableRecord):
+    """A table with what is proven of its largest error; null if there is no closed form.
+
+    It is `understated` if an error was found that is clearly above the one that the table states.
+    """
+
+    state: Literal["proven", "refuted", "not proven", "sampled"]
+    largest_error: LargestErrorRecord | None
+    understated: bool
+
+
 class ThroughputRecord(_Part):
     """Evaluations a second by compiled C and JAX, and the largest difference of their values."""
 
@@ -346,6 +370,13 @@ class VerifyOutput(_Output):
     tables: list[VerifiedTable]
 
 
+class CertifyOutput(_Output):
+    """`shadefit certify`."""
+
+    command: Literal["certify"] = "certify"
+    tables: list[CertifiedTable]
+
+
 class CostOutput(_Output):
     """`shadefit cost`."""
 
@@ -382,6 +413,7 @@ Output = Annotated[
     | BakeOutput
     | SearchOutput
     | VerifyOutput
+    | CertifyOutput
     | CostOutput
     | AmbientOutput
     | RenderOutput,

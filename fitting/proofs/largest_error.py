@@ -18,6 +18,7 @@ from programs.bounding.largest import LargestValue, Report, bound_largest, bound
 from programs.functions import Function, Parameter
 from programs.printing.printer import write_source
 from programs.program import Program
+from programs.toolchains.process import ToolchainError
 
 # A positive bound of denominators that need not be improved
 ENOUGH = 1e-6
@@ -61,13 +62,14 @@ class LargestError:
     """The largest error: at least `lower`, attained at the point `at`, and nowhere above `upper`.
 
     `at` maps the names of axes to values. `boxes` is the number of boxes of the proof. `upper` is
-    None if the search gave up near `at`.
+    None if the search gave up near `at`, or if the error at `at` refutes a claim.
     """
 
     lower: float
     at: dict[str, float]
     upper: float | None
     boxes: int
+    refuted: bool = False
 
 
 def printed(name: str, inputs: tuple[str, ...], call: Callable, results: int | None = None) -> str:
@@ -121,7 +123,10 @@ def certify_largest_error(
             raise ValueError(f"the proof needs a C compiler: {reason}")
         slow = bound_largest_slowly(code.program, code.box, ratio, seeds=starts)
         return _of_form(fitted, code, slow)
-    kernel = code.kernel()
+    try:
+        kernel = code.kernel()
+    except ToolchainError as error:
+        raise ValueError(f"{error.summary}: allowed is gcc or a compiler like it") from error
     if claim is not None:
         claim -= code.inexact
 
@@ -137,16 +142,18 @@ def certify_largest_error(
         )
 
     found = search(kernel)
-    refuted = claim is not None and found.lower > claim
+    refuted = claim is not None and found.lower > claim + 2 * code.inexact
     gave_up = found.upper is None and not refuted and code.program is not None
     # Rounding may make the bounds of a radicand negative that is zero on the boundary.
     if gave_up and prove_no_pole(code.program, code.box, ENOUGH).holds:
         found = search(replace(code, roots_are_defined=True).kernel())
-    return _of_form(fitted, code, found)
+    return _of_form(fitted, code, found, refuted)
 
 
-def _of_form(fitted: FittedForm, code: ErrorCode, found: LargestValue) -> LargestError:
+def _of_form(
+    fitted: FittedForm, code: ErrorCode, found: LargestValue, refuted: bool = False
+) -> LargestError:
     (point,) = code.to_axes(np.array([found.at]))
     at = {axis.name: float(x) for axis, x in zip(fitted.axes, point, strict=True)}
     upper = None if found.upper is None else float(np.nextafter(found.upper + code.inexact, np.inf))
-    return LargestError(max(found.lower - code.inexact, 0.0), at, upper, found.boxes)
+    return LargestError(max(found.lower - code.inexact, 0.0), at, upper, found.boxes, refuted)

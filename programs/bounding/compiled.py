@@ -16,11 +16,12 @@ from programs.toolchains.process import ToolchainError, execute, missing_command
 COMPILER = "gcc"
 # No operation is moved across the change of the rounding mode, folded, fused or made approximate.
 _FLAGS = ("-std=gnu11", "-O2", "-shared", "-fPIC", "-frounding-math", "-ffp-contract=off")
+_FAILURE = "the search in interval arithmetic does not compile"
 _FASTER = ("-march=native", "-fno-math-errno")
 # Seconds. A program of two thousand steps takes about a minute.
 _COMPILE_LIMIT = 600.0
 
-FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING = range(5)
+FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING, REFUTED = range(6)
 
 
 def compiler_missing() -> str | None:
@@ -64,13 +65,15 @@ def compile_kernel(
     code.append((FILES[0].parent / "search.h").read_text("utf-8"))
     with workspace() as folder:
         (folder / "kernel.c").write_text("\n".join(code), encoding="utf-8")
-        command = [COMPILER, *_FLAGS, *_FASTER, "kernel.c", "-o", "kernel.so", "-lm"]
-        execute(
-            command,
-            failure="the search in interval arithmetic does not compile",
-            folder=folder,
-            seconds=_COMPILE_LIMIT,
-        )
+        for extra in (_FASTER, ()):
+            command = [COMPILER, *_FLAGS, *extra, "kernel.c", "-o", "kernel.so", "-lm"]
+            try:
+                execute(command, failure=_FAILURE, folder=folder, seconds=_COMPILE_LIMIT)
+                break
+            except ToolchainError:
+                # Some compilers do not know the processor that they run on.
+                if not extra:
+                    raise
         library = ctypes.CDLL(str(folder / "kernel.so"))
     library.shadefit_search.restype = None
     library.shadefit_enclose.restype = None

@@ -19,6 +19,7 @@ from programs.bounding.branch_and_bound import BranchAndBound
 from programs.bounding.compiled import (
     BUDGET,
     FINISHED,
+    REFUTED,
     ROUNDING,
     STACK_FULL,
     Kernel,
@@ -32,6 +33,8 @@ _CHUNK = 100_000
 # The box is divided into so many pieces for each thread at the start.
 _PIECES = 8
 _CAPACITY = 4096
+# The largest error found is improved by so many rounds of so many steps.
+_RADII, _STEPS = 16, 64
 
 
 @dataclass(frozen=True)
@@ -124,7 +127,10 @@ def bound_largest(
     upper = None
     if claim is None or best.lower <= claim:
         upper = max(best.lower, *(worker.state.reached for worker in workers))
-    return LargestValue(best.lower, tuple(best.at), upper, boxes)
+    lower, at = _climb(kernel, box, best.lower, tuple(best.at))
+    if upper is not None and lower > upper:
+        raise RuntimeError(f"an error of {lower!r} at {at} is above the proven bound {upper!r}")
+    return LargestValue(lower, at, upper, boxes)
 
 
 def bound_largest_slowly(
@@ -175,6 +181,21 @@ def _best_seed(
     return best
 
 
+def _climb(
+    kernel: Kernel, box: np.ndarray, lower: float, at: tuple[float, ...]
+) -> tuple[float, tuple[float, ...]]:
+    """Return a larger |error| near a point and its place, by random steps that become shorter."""
+    rng, sides = np.random.default_rng(0), box[:, 1] - box[:, 0]
+    for radius in np.geomspace(0.02, 1e-7, _RADII):
+        for step in rng.normal(size=(_STEPS, kernel.sides)) * radius * sides:
+            point = np.clip(np.array(at) + step, *box.T)
+            low, high, *_ = kernel.enclose(np.stack([point, point], axis=1))
+            size = max(low, -high)
+            if lower < size < inf:
+                lower, at = size, tuple(point.tolist())
+    return lower, at
+
+
 def _pieces(box: np.ndarray, count: int) -> Sequence[np.ndarray]:
     """Divide a box into `count` slabs along its first side."""
     ends = np.linspace(*box[0], count + 1)
@@ -202,7 +223,7 @@ class _Worker:
     @property
     def failed(self) -> bool:
         """Whether the search cannot go on."""
-        return self.state.status not in (FINISHED, BUDGET, STACK_FULL)
+        return self.state.status not in (FINISHED, BUDGET, STACK_FULL, REFUTED)
 
     def found(self, lower: float, at: Sequence[float]) -> None:
         """Take note of an error that another search has found."""
@@ -239,7 +260,7 @@ def _share(workers: Sequence[_Worker]) -> None:
     """Tell all threads the largest error that one has found, and give idle ones half a stack."""
     best = max(workers, key=_lower).state
     for worker in workers:
-        worker.found(best.lower, best.at)
+        worker.found(best.lower, tuple(best.at))
         richest = max(workers, key=lambda each: each.state.depth)
         if worker.state.depth == 0 and richest.state.depth > 1:
             # The bottom of a stack has the largest boxes.

@@ -13,7 +13,8 @@ import numpy as np
 from jax import Array
 
 from fitting.form import FittedForm
-from fitting.proofs.largest_error import ErrorCode, printed
+from fitting.proofs.largest_error import ENOUGH, ErrorCode, printed
+from fitting.proofs.pole_proof import certify_denominators
 from programs.functions import Function, Parameter
 from programs.jax_operations import JAX_OPERATIONS
 from programs.program import interpret
@@ -176,7 +177,10 @@ def factored_error(fitted: FittedForm, steps: int, degree: int) -> Callable[...,
 
 
 def error_code(fitted: FittedForm) -> ErrorCode:
-    """Return the code of P̃_s − P_s for a form of two stages of a family of P_s."""
+    """Return the code of P̃_s − P_s for a form of two stages.
+
+    No radicand of P_s is negative. Those of the form are proven not to be, if possible.
+    """
     shape = fitted.form.shape or {}
     if "steps" in shape:
         error, results = factored_error(fitted, shape["steps"], shape["degree"]), 2
@@ -194,9 +198,10 @@ def error_code(fitted: FittedForm) -> ErrorCode:
     alpha, theta_f = fitted.axes[:2]
     half_f = np.tan(theta_f.lower / 2) * (1 - 1e-15), 1.0
     box = np.array([[alpha.lower, alpha.upper], half_f, [0.0, 1.0], [-1.0, 1.0]])
+    proven = certify_denominators(fitted, ENOUGH).holds
     # Code of many coefficients compiles for minutes, and its search is short.
     long = fitted.form.size <= _MOST_COEFFICIENTS
-    return ErrorCode(parts, box, _to_axes, _from_axes, roots_are_defined=True, long=long)
+    return ErrorCode(parts, box, _to_axes, _from_axes, roots_are_defined=proven, long=long)
 
 
 def _to_axes(points: np.ndarray) -> np.ndarray:

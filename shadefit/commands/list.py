@@ -29,15 +29,21 @@ def list_tables(json: Json = False) -> None:
             [name, table.quantity, table.form, *_errors(table), _domain(table)]
             for name, table in tables.items()
         ],
-        "Errors as the table states them, off the grid; 'compare' measures published ones.",
+        "Errors as the table states them, off the grid; 'compare' measures published ones. Those "
+        "with ≤ are proven.",
         below=1,
     )
 
 
 def _errors(table: "Table") -> list[str]:
+    from coefficients.rounded_text import rounded_up
+
     if table.errors is None:
         return ["—", "—"]
-    return [f"{table.errors.off_grid.rms:.3e}", f"{table.errors.off_grid.max:.3e}"]
+    proven = table.certificates.largest_error if table.certificates else None
+    measured = f"{table.errors.off_grid.max:.3e}"
+    largest = f"≤ {rounded_up(proven.upper, 4)}" if proven else measured
+    return [f"{table.errors.off_grid.rms:.3e}", largest]
 
 
 def _domain(table: "Table") -> str:

@@ -43,6 +43,9 @@ def test_it_goes_through_every_command(tmp_path, capsys):
     for language in sf.LANGUAGES:
         assert "SoftStep" in run("export", table, "--to", language)
     assert "failed" not in run("verify", table, "--to", "c")
+    (proven,) = json.loads(run("certify", table, "--json"))["tables"]
+    assert proven["state"] == "proven"
+    assert 0.999 * largest["linf"] <= proven["largest_error"]["upper"] <= 1.011 * largest["linf"]
 
     found = json.loads(run("search", "soft", "--out", tmp_path / "search", "--json"))
     assert [each["form"] for each in found["frontier"]] == ["short", "longer"]

@@ -11,7 +11,7 @@
 #define HALF_PI_SECOND 0x1.0b4611a6p-34
 #define HALF_PI_REST between(0x1.3198a2e037073p-69, 0x1.3198a2e037074p-69)
 #define HALF_PI between(0x1.921fb54442d18p+0, 0x1.921fb54442d19p+0)
-/* A sum with this number is rounded to a whole number. */
+/* A sum with this number is rounded up to a whole number. */
 #define WHOLE 0x1.8p52
 
 INLINE V as_real(M a) { return __builtin_convertvector(a, V); }
@@ -24,6 +24,8 @@ INLINE V vceil(V x) {
     V t = as_real(as_whole(x));
     return t + pick(t < x, all(1), all(0));
 }
+/* The whole number that is nearest to x, but for rounding, while the processor rounds upward */
+INLINE V nearest(V x) { return ((x - 0.5) + WHOLE) - WHOLE; }
 INLINE iv idivide(iv a, double k) { return (iv){a.n / k, a.h / k}; }
 INLINE iv over_odd(int k) { return pdiv(number(1), number(k)); }
 
@@ -34,14 +36,15 @@ static inline iv exp_series(iv r, int skip) {
     return p;
 }
 static iv exp_at(boxes *K, V x) {
-    M fine = (x > -700) & (x < 700);
+    M fine = (x >= -DBL_MAX) & (x < 700), tiny = x <= -700;
     K->bad |= ~fine;
-    x = pick(fine, x, all(0));
-    V k = (x * 0x1.71547652b82fep+0 + WHOLE) - WHOLE;
+    x = pick(fine & ~tiny, x, all(0));
+    V k = nearest(x * 0x1.71547652b82fep+0);
     iv r = isub(isub(point(x), point(k * LN2_FIRST)), iscale(LN2_REST, k));
     iv p = exp_series(r, 0);
     V power = (V)((as_whole(k) + 1023) << 52);
-    return (iv){p.n * power, p.h * power};
+    /* e^-700 < 2^-1009 */
+    return ipick(tiny, between(0, 0x1p-1009), (iv){p.n * power, p.h * power});
 }
 static iv expm1_at(boxes *K, V x) {
     M small = (x > -0.35) & (x < 0.35);
@@ -99,7 +102,7 @@ static iv cos_at(boxes *K, V x) {
     M fine = (x > -1000) & (x < 1000);
     K->bad |= ~fine;
     x = pick(fine, x, all(0));
-    V k = (x * 0x1.45f306dc9c883p-1 + WHOLE) - WHOLE;
+    V k = nearest(x * 0x1.45f306dc9c883p-1);
     iv r = isub(isub(point(x), point(k * HALF_PI_FIRST)), point(k * HALF_PI_SECOND));
     r = isub(r, iscale(HALF_PI_REST, k));
     iv z = isquare(r), s = between(0.99, 1.0), c = s, one = number(1);
@@ -176,6 +179,30 @@ static inline jet constant(iv x) {
     return y;
 }
 static jet jpow(boxes *K, jet a, jet b) { return jexp(K, times(K, b, jlog(K, a))); }
+/* a^y for a >= 0 and y > 0; 0 at a = 0 */
+static iv pow_at(boxes *K, V a, double y) {
+    M zero = a < DBL_MIN;
+    iv log = log_at(K, pick(zero, all(DBL_MIN), a)), power = imul(log, number(y));
+    iv p = {exp_at(K, -power.n).n, exp_at(K, power.h).h};
+    p.n = pick(zero, all(0), p.n);
+    p.h = pick(a <= 0, all(0), p.h);
+    return p;
+}
+static iv pow_range(boxes *K, iv a, double y) {
+    return (iv){pow_at(K, -a.n, y).n, pow_at(K, a.h, y).h};
+}
+static jet jpow_n(boxes *K, jet a, double y) {
+    if (!(y > 0)) return jpow(K, a, lift(K, y));
+    K->bad |= ~(a.v.n <= 0);
+    V zero = all(0);
+    iv v = pow_range(K, a.v, y), c = pow_range(K, imeet(a.c, (iv){zero, a.c.h}), y), slope;
+    if (y > 1) slope = iscale(pow_range(K, a.v, y - 1), all(y));
+    else slope = imul(imul(v, ireciprocal(a.v)), number(y));
+    /* y - 1 may be rounded: its neighbours are as good. */
+    if (y > 1) slope = ihull(slope, iscale(pow_range(K, a.v, (y - 1) * (1 - 0x1p-50)), all(y)));
+    return chain(K, a, v, c, slope);
+}
+static jet jpow_nj(boxes *K, double a, jet b) { return jpow(K, lift(K, a), b); }
 static jet jatan2(boxes *K, jet y, jet x) {
     K->bad |= ~(x.v.n < 0);
     return jatan(K, over(K, y, x));
@@ -204,7 +231,7 @@ static jet jtanh(boxes *K, jet a) {
 #define ASIN(a) jasin(K, a)
 #define ACOS(a) sub_jj(K, constant(HALF_PI), jasin(K, a))
 #define ATAN2(a, b) jatan2(K, JET(a), JET(b))
-#define POW(a, b) jpow(K, JET(a), JET(b))
+#define POW(a, b) PAIR(a, b, jpow, jpow_n, jpow_nj)
 #define SINH(a) jsinh(K, a)
 #define COSH(a) jcosh(K, a)
 #define TANH(a) jtanh(K, a)

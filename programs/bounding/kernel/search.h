@@ -16,7 +16,7 @@ typedef struct {
     long leaf_count, leaf_capacity;
 } search;
 
-enum { FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING };
+enum { FINISHED, BUDGET, STACK_FULL, STUCK, ROUNDING, REFUTED };
 
 static int rounds_upward(void) {
     volatile double one = 1, tiny = 0x1p-60, three = 3;
@@ -28,9 +28,10 @@ static int rounds_upward(void) {
         if (!(quotient[i] == 0x1.5555555555556p-2) || !(below[i] == -0x1.5555555555555p-2)) return 0;
         if (!(s[i] == 0x1.bb67ae8584cabp+0)) return 0;
     }
-    /* A fused multiply-add would find the rounding error of the product, which is not zero. */
+    /* A fused multiply-add would find the rounding error of the product, which is not zero. x is
+       read twice, so that the compiler does not see that both products are one. */
     volatile double x = 1 + 0x1p-30;
-    V y = all(x), p = y * y, rest = y * y - p;
+    V y = all(x), z = all(x), p = z * z, rest = y * y - p;
     for (int i = 0; i < 8; ++i)
         if (rest[i] != 0) return 0;
     return 1;
@@ -129,8 +130,12 @@ static void run(search *s) {
             }
         }
         s->level = __builtin_fmax(s->level, s->lower * s->ratio);
-        s->depth -= count;
         s->boxes += count;
+        if (s->lower > s->level) {
+            s->status = REFUTED;
+            return;
+        }
+        s->depth -= count;
         __builtin_memcpy(batch, s->stack + 2 * NVAR * s->depth, sizeof(double) * 2 * NVAR * count);
         for (int i = 0; i < count; ++i) {
             const double *box = batch + 2 * NVAR * i;

@@ -92,5 +92,5 @@ static void cubic_root(boxes *K, jet p, jet r, jet m, jet alpha2, jet *root, jet
     iv w_centre = not_negative(imeet(isub(centre, p.c), gap_of(centre, r.c, m.c)));
     *root = combine(K, proven, centre, p, by_p, r, by_r, m, by_m);
     *gap = combine(K, w_proven, w_centre, p, away, r, by_r, m, by_m);
-    *gap = limited(*gap, 0, 1);
+    *gap = limited(*gap, 0, 2);
 }

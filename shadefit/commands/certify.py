@@ -1,0 +1,131 @@
+"""`shadefit certify`: prove the largest errors of tables on their whole domains."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from shadefit.commands.options import Json
+from shadefit.completion import complete_table
+
+if TYPE_CHECKING:
+    from coefficients.certify import Certification
+    from shadefit.records import CertifiedTable
+
+
+def certify(
+    tables: Annotated[
+        list[str],
+        typer.Argument(
+            help="Names or paths of tables; 'all' for the packaged ones that were fitted.",
+            autocompletion=complete_table,
+        ),
+    ],
+    upper_ratio: Annotated[
+        float,
+        typer.Option(help="Largest quotient of the proven bound and the largest error found."),
+    ] = 1.01,
+    at_most: Annotated[
+        float | None,
+        typer.Option(help="Prove that no error is above this, or find a point where one is."),
+    ] = None,
+    threads: Annotated[int, typer.Option(min=1, help="Threads of the search.")] = 2,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder to write the tables to, with their proven largest errors."),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Prove a bound of the largest error of tables on their whole domains.
+
+    This needs a C compiler and a closed form of the exact value; other quantities are 'sampled'.
+    The exit status is 1 if something that has a closed form is refuted or not proven.
+    """
+    from coefficients.certify import certify as certify_entry
+    from coefficients.certify import chosen, with_largest_error
+    from coefficients.files import require_writable, write_whole
+    from coefficients.table import serialise
+    from shadefit.progress import stages
+    from shadefit.records import CertifyOutput
+    from shadefit.terminal import print_json
+
+    if at_most is not None and not at_most > 0:
+        raise ValueError(f"--at-most {at_most:g}: allowed is a positive number")
+    if out is not None:
+        require_writable(out)
+    done: list[Certification] = []
+    entries = chosen(tables)
+    with stages() as progress:
+        line = progress.begin("tables", total=len(entries))
+        for entry in entries:
+            line.show(f"{entry.name}: compiling the search")
+
+            def report(standing, name: str = entry.name) -> None:
+                line.show(_standing(name, standing))
+
+            found = certify_entry(
+                entry, upper_ratio, claim=at_most, threads=threads, progress=report
+            )
+            done.append(found)
+            line.advance()
+            if out is not None and found.state == "proven":
+                text = serialise(with_largest_error(found))
+                write_whole(out / f"{entry.require_table().name}.json", text)
+    if json:
+        print_json(CertifyOutput(tables=[_record(each) for each in done]))
+    else:
+        _print(done)
+    return 1 if any(each.state in ("refuted", "not proven") for each in done) else 0
+
+
+def _standing(name: str, standing) -> str:
+    seconds = standing.remaining
+    left = f", about {seconds:.0f} s left" if seconds < 1e6 else ""
+    return (
+        f"{name}: {100 * standing.part:.1f} % proven, {standing.boxes:,} boxes, "
+        f"largest error found {standing.lower:.4g}{left}"
+    )
+
+
+def _record(each: "Certification") -> "CertifiedTable":
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.records import CertifiedTable, LargestErrorRecord
+
+    found = each.found
+    largest = None
+    if found is not None:
+        largest = LargestErrorRecord(
+            lower=found.lower, at=found.at, upper=found.upper, boxes=found.boxes
+        )
+    return CertifiedTable(
+        **entry_fields(each.entry),
+        state=each.state,
+        largest_error=largest,
+        understated=each.understated,
+    )
+
+
+def _print(done: "list[Certification]") -> None:
+    from shadefit.terminal import print_table
+
+    print_table(
+        "Largest errors on the whole domain",
+        ["table", "state", "at least", "at most", "stated", "boxes", "at"],
+        [_row(each) for each in done],
+        "proven: no error on the domain is above 'at most'. sampled: there is no closed form, and "
+        "the stated error is the largest of those measured.",
+    )
+
+
+def _row(each: "Certification") -> list[str]:
+    from coefficients.rounded_text import rounded_down, rounded_up
+    from shadefit.terminal import place
+
+    state = each.state + (", understated" if each.understated else "")
+    stated = "—" if each.stated is None else f"{each.stated:.6g}"
+    found = each.found
+    if found is None:
+        return [each.entry.name, state, "—", "—", stated, "—", "—"]
+    upper = "—" if found.upper is None else rounded_up(found.upper, 6)
+    lower = rounded_down(found.lower, 6)
+    return [each.entry.name, state, lower, upper, stated, f"{found.boxes:,}", place(found.at)]

@@ -1,0 +1,46 @@
+"""Kernels for tests: many expressions in one compiled search, and one expression alone."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from programs.bounding.compiled import Kernel, compile_kernel
+from programs.bounding.interval_code import INTERVAL_C
+from programs.functions import Function, Parameter
+from programs.printing.printer import write_source
+
+NAMES = "xyz"
+
+
+def code_of(name: str, call: Callable, sides: int) -> str:
+    parameters = tuple(Parameter(each, (-1.0, 1.0)) for each in NAMES[:sides])
+    return write_source(Function(name, "", parameters, None, "value", call), INTERVAL_C, "double")
+
+
+def kernel_of(call: Callable, sides: int = 1, **options) -> Kernel:
+    arguments = ", ".join(f"x[{k}]" for k in range(sides))
+    entry = f"static jet error_at(boxes *K, const jet *x) {{ return expression(K, {arguments}); }}"
+    return compile_kernel([code_of("expression", call, sides), entry], sides, **options)
+
+
+class Kernels:
+    """A kernel with several expressions, one of which is chosen at a time: one compilation."""
+
+    def __init__(self, calls: Mapping[str, Callable], sides: int):
+        self.places = {name: k for k, name in enumerate(calls)}
+        parts = [code_of(f"expression_{k}", call, sides) for k, call in enumerate(calls.values())]
+        arguments = ", ".join(f"x[{k}]" for k in range(sides))
+        cases = " ".join(
+            f"case {k}: return expression_{k}(K, {arguments});" for k in range(len(calls))
+        )
+        parts.append(
+            f"static int place; void choose_place(int k) {{ place = k; }}\n"
+            f"static jet error_at(boxes *K, const jet *x) {{ switch (place) {{ {cases} }} "
+            "K->bad = ~(M){0}; return x[0]; }"
+        )
+        self.kernel = compile_kernel(parts, sides)
+
+    def __call__(self, name: str, lower, upper) -> tuple[float, float, float, float]:
+        """Bound an expression on a box, and its value at the centre."""
+        self.kernel.library.choose_place(self.places[name])
+        return self.kernel.enclose(np.stack([np.atleast_1d(lower), np.atleast_1d(upper)], axis=1))

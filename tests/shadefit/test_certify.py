@@ -1,0 +1,70 @@
+"""The command `certify`."""
+
+import json
+
+import pytest
+
+from coefficients.table import read
+from fitting.proofs import largest_error
+from programs.bounding.compiled import compiler_missing
+from shadefit.cli import main
+
+needs_compiler = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
+
+
+def run(capsys, *arguments):
+    with pytest.raises(SystemExit) as stopped:
+        main(list(arguments))
+    captured = capsys.readouterr()
+    return stopped.value.code, captured.out, captured.err
+
+
+@needs_compiler
+def test_tables_are_proven_printed_and_written(capsys, tmp_path):
+    status, out, _ = run(capsys, "certify", "best/q-9", "r", "--json", "--out", str(tmp_path))
+    assert status == 0
+    first, second = json.loads(out)["tables"]
+    assert (first["state"], second["state"]) == ("proven", "sampled")
+    assert second["largest_error"] is None
+    record = read(tmp_path / "q-9.json").certificates.largest_error
+    assert record.model_dump() == first["largest_error"]
+    assert list(tmp_path.iterdir()) == [tmp_path / "q-9.json"]
+    status, out, _ = run(capsys, "certify", str(tmp_path / "q-9.json"))
+    assert status == 0
+    assert "proven" in out and "density 0.2744" in out
+
+
+@needs_compiler
+def test_a_claim_that_is_wrong_is_refuted(capsys):
+    status, out, _ = run(capsys, "certify", "best/q-4", "--at-most", "6.9e-4", "--json")
+    assert status == 1
+    (found,) = json.loads(out)["tables"]
+    assert found["state"] == "refuted"
+    assert found["largest_error"]["lower"] > 6.9e-4 and found["largest_error"]["upper"] is None
+    status, out, _ = run(capsys, "certify", "best/q-4", "--at-most", "7e-4")
+    assert status == 0 and "proven" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("best/q-4", "--upper-ratio", "1"), "upper ratio 1: allowed is a number above 1"),
+        (("best/q-4", "--at-most", "-1"), "--at-most -1: allowed is a positive number"),
+        (("exact/q",), "exact/q has no coefficients"),
+        (("nothing",), "no table is called 'nothing'"),
+        (("best/q-4", "--threads", "0"), "--threads"),
+    ],
+)
+def test_bad_input_is_one_line(capsys, arguments, message):
+    status, out, error = run(capsys, "certify", *arguments)
+    assert (status, out) == (2, "")
+    assert message in error and error.count("\n") == 1
+
+
+def test_without_a_compiler_p_s_cannot_be_proven(capsys, monkeypatch):
+    monkeypatch.setattr(largest_error, "compiler_missing", lambda: "gcc is not on PATH")
+    status, out, error = run(capsys, "certify", "best/ps-11")
+    assert (status, out) == (2, "")
+    assert "needs a C compiler: gcc is not on PATH" in error
+    status, out, _ = run(capsys, "certify", "best/q-4", "--upper-ratio", "1.05")
+    assert status == 0 and "proven" in out
