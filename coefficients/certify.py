@@ -1,6 +1,7 @@
 """The largest errors of tables as theorems: proven where the exact value has a closed form."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +17,9 @@ RATIO = 1.01
 UNDERSTATED = 1e-3
 
 
+State = Literal["proven", "refuted", "not proven", "sampled"]
+
+
 @dataclass(frozen=True)
 class Certification:
     """What was found of a table's largest error.
@@ -29,7 +33,7 @@ class Certification:
     stated: float | None
 
     @property
-    def state(self) -> str:
+    def state(self) -> State:
         """Return 'proven', 'refuted' (with a point above the claim), 'not proven' or 'sampled'."""
         if self.found is None:
             return "sampled"
