@@ -102,6 +102,7 @@ def _seeds(entry: Entry) -> np.ndarray:
 def with_largest_error(certification: Certification) -> Table:
     """Return the table with its proven largest error.
 
+    If the proof found a larger error than the one that the table states, the table states it now.
     Raises ValueError if it is not proven, or for a published table, which has no certificates.
     """
     found, table = certification.found, certification.entry.require_table()
@@ -113,4 +114,8 @@ def with_largest_error(certification: Certification) -> Table:
         lower=found.lower, at=found.at, upper=found.upper, boxes=found.boxes
     )
     certificates: Certificates = table.certificates.model_copy(update={"largest_error": record})
-    return table.model_copy(update={"certificates": certificates})
+    errors = table.errors
+    if errors is not None and found.lower > errors.off_grid.max:
+        worst = errors.off_grid.model_copy(update={"max": found.lower, "where": found.at})
+        errors = errors.model_copy(update={"off_grid": worst})
+    return table.model_copy(update={"certificates": certificates, "errors": errors})
