@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 
 from coefficients.catalogue import Entry, entries, resolve
-from coefficients.table import Certificates, LargestErrorRecord, Table
+from coefficients.table import Table
+from coefficients.table_parts import Certificates, LargestErrorRecord
 from fitting.proofs.largest_error import LargestError, certify_largest_error
 from programs.bounding.largest import Report
 

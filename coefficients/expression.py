@@ -10,7 +10,8 @@ import re
 import jax.numpy as jnp
 import numpy as np
 
-from coefficients.table import Expression, Table
+from coefficients.table import Table
+from coefficients.table_parts import Expression
 from fitting.form import Form, Stage
 from fitting.linearity import program_of
 from integrals.reference import Axis, Reference

@@ -4,7 +4,7 @@ import math
 
 from coefficients.catalogue import Entry
 from coefficients.rounded_text import rounded_down, rounded_up
-from coefficients.table import Certificates
+from coefficients.table_parts import Certificates
 from fitting import FittedForm
 from fitting.fit import ENOUGH
 from fitting.proofs.pole_proof import certify_denominators

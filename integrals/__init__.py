@@ -28,11 +28,11 @@ from integrals.fuzz.velvet import VELVET as VELVET
 from integrals.reference import Axis as Axis
 from integrals.reference import Estimate as Estimate
 from integrals.reference import Reference as Reference
+from integrals.reference_of_source import make_reference as make_reference
 from integrals.sampling import Sampling as Sampling
 from integrals.sources import Source as Source
 from integrals.sources import closed_form as closed_form
 from integrals.sources import hemisphere as hemisphere
-from integrals.sources import make_reference as make_reference
 from integrals.sources import quadrature as quadrature
 from integrals.sources import sphere as sphere
 

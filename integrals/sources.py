@@ -15,7 +15,6 @@ and quadrature also work under `jax.grad`, by the axes.
 """
 
 import functools
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -24,29 +23,19 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from integrals.data import Data
 from integrals.monte_carlo import Sequence as PointSequence
 from integrals.monte_carlo import mean_estimate, unit_points
-from integrals.reference import Axis, Estimate, Leg, Reference, leg
+from integrals.reference import Axis, Estimate, Leg, leg
 from integrals.rules.adaptive import adaptive
 from integrals.rules.directions import hemisphere_angles, sphere_angles
 from integrals.rules.effort import Effort, effort_of, evaluations_at_once
 from integrals.rules.ranges import Place, Range, at, ranges_of
-from integrals.sampling import Sampling
 from integrals.user_functions import check_function, check_map, check_range, probe_cube
 
 # The error of a closed form without a stated error, in units of ε times its value.
 ROUNDINGS = 8
 
-# The codomain of a quantity that does not state one.
-EVERYTHING = (-math.inf, math.inf)
-
 _ORDER = ("closed_form", "quadrature", "monte_carlo")
-
-# Values of the integrand that `Reference.estimates` keeps in memory at once. They fit in the cache.
-# Larger batches are slower, too: every point of a batch takes as many steps as its hardest point.
-_VALUES_AT_ONCE = 1 << 17
-_LARGEST_BATCH = 8192
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,83 +236,6 @@ def monte_carlo(
         return leg(*axes)(evaluate)
 
     return Source({"monte_carlo": build}, {"monte_carlo": samples})
-
-
-def make_reference(
-    source: Source | Data | Sequence[Source],
-    *,
-    name: str,
-    axes: Sequence[Axis],
-    symbol: str = "",
-    meaning: str = "",
-    definition: str = "",
-    sampling: Sampling | None = None,
-    codomain: tuple[float | int, float | int] = EVERYTHING,
-) -> Reference:
-    """Return the reference of a quantity with these axes. A sequence of sources is added up.
-
-    `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does, and for data
-    outside the axes' domains or with another number of axes.
-    """
-    legs, data, batch = {}, None, _LARGEST_BATCH
-    if isinstance(source, Data):
-        data, default = source, Sampling(fitted=11, checked=11, judged=11, climbs=False)
-        _require_inside(data, axes)
-    else:
-        total = source if isinstance(source, Source) else functools.reduce(Source.__add__, source)
-        legs = total.legs(axes)
-        at_once = total.at_once[next(iter(legs))]
-        batch = max(1, min(_LARGEST_BATCH, _VALUES_AT_ONCE // at_once))
-        default = _sampling(len(axes), at_once)
-    return Reference(
-        name=name,
-        symbol=symbol or name,
-        meaning=meaning,
-        definition=definition,
-        axes=tuple(axes),
-        sampling=sampling or default,
-        batch=batch,
-        closed_form=legs.get("closed_form"),
-        quadrature=legs.get("quadrature"),
-        monte_carlo=legs.get("monte_carlo"),
-        codomain=(float(codomain[0]), float(codomain[1])),
-        data=data,
-    )
-
-
-def _require_inside(data: Data, axes: Sequence[Axis]) -> None:
-    """Raise ValueError unless all points of the data are in the domains of the axes."""
-    if data.points.shape[1] != len(axes):
-        names = ", ".join(axis.name for axis in axes)
-        raise ValueError(
-            f"{data.source} has {data.points.shape[1]} columns of points: expected is one for each "
-            f"of {names}"
-        )
-    for k, axis in enumerate(axes):
-        for row in np.flatnonzero(~axis.contains(data.points[:, k]))[:1]:
-            raise ValueError(
-                f"{data.source}, row {row + 1}: {axis.name} = {data.points[row, k]:g} is outside "
-                f"its domain {axis.domain}"
-            )
-
-
-def _sampling(axes: int, at_once: int) -> Sampling:
-    """Return the default numbers of points for a number of axes.
-
-    `at_once` is the number of values of an integrand that a point needs; 1 for a closed form. A
-    closed form has as many points as a built-in quantity with as many axes. An integral has about
-    as many for the search for large errors, instead of hill climbing: values near those that were
-    computed already would be computed again and again. If a point needs over 1000 values, it takes
-    milliseconds, and the numbers are those of R.
-    """
-    if at_once > 1000:
-        return Sampling(fitted=11, checked=10, judged=12, climbs=False, verified=1 << 12)
-    if at_once > 1:
-        most = 14 if axes == 1 else 15
-        return Sampling(fitted=12, checked=most, judged=14, climbs=False, verified=1 << 14)
-    if axes == 1:
-        return Sampling(fitted=11, checked=13, judged=16)
-    return Sampling(fitted=13, checked=15, judged=16 if axes == 2 else 17)
 
 
 def _adaptive_leg(axes: tuple[Axis, ...], integrand, ranges: list[Range], effort: Effort) -> Leg:

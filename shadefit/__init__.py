@@ -52,9 +52,9 @@ if TYPE_CHECKING:
     from integrals.data import samples as samples
     from integrals.data import table as table
     from integrals.reference import leg as leg
+    from integrals.reference_of_source import make_reference as make_reference
     from integrals.sources import closed_form as closed_form
     from integrals.sources import hemisphere as hemisphere
-    from integrals.sources import make_reference as make_reference
     from integrals.sources import monte_carlo as monte_carlo
     from integrals.sources import quadrature as quadrature
     from integrals.sources import sphere as sphere
@@ -87,9 +87,8 @@ _HOMES = {
     ),
     "integrals.data": ("samples", "table"),
     "integrals.reference": ("leg",),
-    "integrals.sources": (
-        *("closed_form", "hemisphere", "make_reference", "monte_carlo", "quadrature", "sphere"),
-    ),
+    "integrals.reference_of_source": ("make_reference",),
+    "integrals.sources": (*("closed_form", "hemisphere", "monte_carlo", "quadrature", "sphere"),),
     "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
     "quantities": ("problem", "problems", "register"),
     "quantities.calling_convention": ("Argument", "CallingConvention"),

@@ -20,8 +20,9 @@ from fitting.shapes.pole_sums import pole_sum
 from fitting.shapes.rationals import polynomial, rational
 from integrals.data import Data
 from integrals.reference import Axis, Reference, restricted
+from integrals.reference_of_source import EVERYTHING, make_reference
 from integrals.sampling import Measure, Sampling
-from integrals.sources import EVERYTHING, Source, make_reference
+from integrals.sources import Source
 from integrals.user_functions import check_function
 from programs.functions import Parameter, function
 from programs.printing.formula import formula

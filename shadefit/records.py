@@ -1,17 +1,15 @@
-"""What `--json` prints: one shape for a table, its errors and its place, in every command.
+"""The parts of what `--json` prints: one shape for a table, its errors and its place.
 
-docs/json.md describes the objects, and output.schema.json is their JSON Schema. This module needs
-no JAX.
+`shadefit.outputs` has the whole objects, one for each command. docs/json.md describes them. This
+module needs no JAX.
 """
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import BaseModel, ConfigDict, Field
 
 from coefficients.packaged import Kind
 from coefficients.table import Table
-
-SCHEMA = "shadefit.output/1"
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Size = Annotated[Number, Field(ge=0)]
@@ -20,11 +18,13 @@ Count = Annotated[int, Field(ge=0)]
 Place = dict[str, Number]
 
 
-class _Part(BaseModel):
+class Part(BaseModel):
+    """A part of a JSON object: it has no other keys."""
+
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class ErrorsRecord(_Part):
+class ErrorsRecord(Part):
     """The rms and the largest absolute error at a number of points.
 
     `where` has the largest error. It is null, and so is `points`, if they are not known.
@@ -36,7 +36,7 @@ class ErrorsRecord(_Part):
     points: Count | None = None
 
 
-class TableRecord(_Part):
+class TableRecord(Part):
     """A table or a closed form.
 
     `form` is null for a closed form, `file` for a table that comes with shadefit. `errors` are
@@ -52,7 +52,7 @@ class TableRecord(_Part):
     errors: ErrorsRecord | None
 
 
-class SecondOpinionRecord(_Part):
+class SecondOpinionRecord(Part):
     """What jaxopt found from `tried` other starts at the points of a fit.
 
     `error` and `other_error` are what the fit minimised, of the table and of the best other end;
@@ -78,7 +78,7 @@ class RefittedTable(TableRecord):
     second_opinion: SecondOpinionRecord | None = None
 
 
-class Ratios(_Part):
+class Ratios(Part):
     """The errors of a table, divided by those of the first table of the comparison."""
 
     rms: Size
@@ -93,14 +93,14 @@ class ComparedTable(TableRecord):
     coefficients: list[Any]
 
 
-class LargestDifference(_Part):
+class LargestDifference(Part):
     """The largest difference between the values of the first and the last table, and its place."""
 
     value: Size
     where: Place
 
 
-class ComparisonRecord(_Part):
+class ComparisonRecord(Part):
     """Tables of one quantity, measured at the same points of their common domain."""
 
     quantity: str
@@ -110,7 +110,7 @@ class ComparisonRecord(_Part):
     largest_difference: LargestDifference
 
 
-class Leg(_Part):
+class Leg(Part):
     """An exact value, and the error that its method states."""
 
     value: Number
@@ -142,7 +142,7 @@ class CodeErrors(ErrorsRecord):
     not_finite: Count
 
 
-class CheckRecord(_Part):
+class CheckRecord(Part):
     """Exported code in one language and precision; `errors` are null if it was not run.
 
     `form`: the difference from the float64 form, `units` the same in units in the last place,
@@ -167,7 +167,7 @@ class VerifiedTable(TableRecord):
     checks: list[CheckRecord]
 
 
-class LargestErrorRecord(_Part):
+class LargestErrorRecord(Part):
     """What is proven of a largest error.
 
     It is at least `lower`, at the point `at`, and at most
@@ -191,7 +191,7 @@ class CertifiedTable(TableRecord):
     understated: bool
 
 
-class ThroughputRecord(_Part):
+class ThroughputRecord(Part):
     """Evaluations a second by compiled C and JAX, and the largest difference of their values."""
 
     compiled: Size
@@ -203,7 +203,7 @@ class ThroughputRecord(_Part):
     flags: list[str]
 
 
-class FunctionRecord(_Part):
+class FunctionRecord(Part):
     """The operations of an exported function, by kind."""
 
     function: str
@@ -220,7 +220,7 @@ class CostedTable(TableRecord):
     functions: list[FunctionRecord]
 
 
-class AmbientErrors(_Part):
+class AmbientErrors(Part):
     """Errors of the ambient model relative to the mean radiance: rms and bias by functions."""
 
     part: str
@@ -232,7 +232,7 @@ class AmbientErrors(_Part):
     where: Place
 
 
-class LargestRadiance(_Part):
+class LargestRadiance(Part):
     """The largest radiance in uniform light of radiance one, and where it is."""
 
     what: str
@@ -240,7 +240,7 @@ class LargestRadiance(_Part):
     where: Place
 
 
-class ImageRecord(_Part):
+class ImageRecord(Part):
     """An image's mean luminance, and its rms and largest difference from the exact image."""
 
     scene: str
@@ -248,182 +248,6 @@ class ImageRecord(_Part):
     mean: Number
     rms: Size
     max: Size
-
-
-class _Output(_Part):
-    schema_: Literal["shadefit.output/1"] = Field(alias="schema", default=SCHEMA)
-
-
-class ListOutput(_Output):
-    """`shadefit list`."""
-
-    command: Literal["list"] = "list"
-    tables: list[TableRecord]
-
-
-class RefitOutput(_Output):
-    """`shadefit refit`."""
-
-    command: Literal["refit"] = "refit"
-    tables: list[RefittedTable]
-
-
-class FitOutput(_Output):
-    """`shadefit fit`; `file` is null for a table that was not written."""
-
-    command: Literal["fit"] = "fit"
-    tables: list[RefittedTable]
-
-
-class CompareOutput(_Output):
-    """`shadefit compare`."""
-
-    command: Literal["compare"] = "compare"
-    comparisons: list[ComparisonRecord]
-
-
-class EvaluateOutput(_Output):
-    """`shadefit evaluate`."""
-
-    command: Literal["evaluate"] = "evaluate"
-    quantity: str
-    where: Place
-    legs: dict[str, Leg]
-    tables: list[EvaluatedTable]
-
-
-class PointsOutput(_Output):
-    """`shadefit evaluate --points`; `values` are null if they were written to a file.
-
-    A value outside a table's domain is null.
-    """
-
-    command: Literal["evaluate-points"] = "evaluate-points"
-    quantity: str
-    points: Count
-    file: str | None
-    columns: list[str]
-    values: dict[str, list[Number | None]] | None
-
-
-class BakedAxis(_Part):
-    """An axis of a LUT; `coordinate` is the formula of its texture coordinate."""
-
-    name: str
-    domain: Annotated[list[Number], Field(min_length=2, max_length=2)]
-    unit: str
-    scale: str
-    coordinate: str
-
-
-class BakeSource(_Part):
-    """The table that a LUT was made of, in the domain of the LUT."""
-
-    rms: Size
-    max: Size
-    bytes: Count
-    operations: Count
-    largest_difference: Size
-
-
-class BakeOutput(_Output):
-    """`shadefit bake`; `errors` are those of the LUT, `tables` are the others of the quantity."""
-
-    command: Literal["bake"] = "bake"
-    file: str
-    format: str
-    source: str
-    size: list[Count]
-    axes: list[BakedAxis]
-    texel: str
-    span: list[Number]
-    filter: str
-    centres: str
-    weight_bits: Count | None
-    bytes: Count
-    fetches: Count
-    operations: Count
-    moved_texels: Count
-    rounding: Size
-    errors: ErrorsRecord
-    table: BakeSource | None
-    tables: list[dict[str, Any]]
-
-
-class SearchOutput(_Output):
-    """`shadefit search`: `good` are the tables of the frontier within --max-error."""
-
-    command: Literal["search"] = "search"
-    quantity: str
-    published: FoundTable | None
-    exact: list[FoundTable]
-    refused: Count
-    frontier: list[FoundTable]
-    good: list[FoundTable]
-    all: list[FoundTable]
-
-
-class VerifyOutput(_Output):
-    """`shadefit verify`."""
-
-    command: Literal["verify"] = "verify"
-    tables: list[VerifiedTable]
-
-
-class CertifyOutput(_Output):
-    """`shadefit certify`."""
-
-    command: Literal["certify"] = "certify"
-    tables: list[CertifiedTable]
-
-
-class CostOutput(_Output):
-    """`shadefit cost`."""
-
-    command: Literal["cost"] = "cost"
-    tables: list[CostedTable]
-
-
-class AmbientOutput(_Output):
-    """`shadefit ambient`."""
-
-    command: Literal["ambient"] = "ambient"
-    points: Count
-    errors: list[AmbientErrors]
-    energy: list[LargestRadiance]
-    rms_without_symmetry: dict[str, Size]
-    files: list[str]
-
-
-class RenderOutput(_Output):
-    """`shadefit render`; with --sweep there are no `images`."""
-
-    command: Literal["render"] = "render"
-    files: list[str]
-    images: list[ImageRecord]
-
-
-Output = Annotated[
-    ListOutput
-    | RefitOutput
-    | CompareOutput
-    | FitOutput
-    | EvaluateOutput
-    | PointsOutput
-    | BakeOutput
-    | SearchOutput
-    | VerifyOutput
-    | CertifyOutput
-    | CostOutput
-    | AmbientOutput
-    | RenderOutput,
-    Field(discriminator="command"),
-]
-
-
-def output_schema() -> dict[str, Any]:
-    """Return the JSON Schema of everything that `--json` prints."""
-    return TypeAdapter(Output).json_schema(by_alias=True)
 
 
 def table_fields(name: str, kind: Kind, table: Table, file: str | None = None) -> dict[str, Any]:

@@ -26,8 +26,8 @@ def run(out: Path, json: bool) -> None:
     from shadefit.ambient.errors import errors_with_phase_integral, model_errors
     from shadefit.ambient.radiances import materials_and_views, radiances
     from shadefit.ambient.sheet import draw_ambient
+    from shadefit.outputs import AmbientOutput
     from shadefit.progress import stages
-    from shadefit.records import AmbientOutput
     from shadefit.terminal import print_json
 
     require_writable(out)

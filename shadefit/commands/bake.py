@@ -233,7 +233,7 @@ def _show(report: dict[str, Any], json: bool) -> None:
     from shadefit.terminal import place, print_json, print_table
 
     if json:
-        from shadefit.records import BakeOutput
+        from shadefit.outputs import BakeOutput
 
         errors = {key: report[key] for key in ("rms", "max", "where")}
         rest = {key: value for key, value in report.items() if key not in errors}

@@ -45,8 +45,8 @@ def certify(
     from coefficients.certify import chosen, with_largest_error
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
+    from shadefit.outputs import CertifyOutput
     from shadefit.progress import stages
-    from shadefit.records import CertifyOutput
     from shadefit.terminal import print_json
 
     if at_most is not None and not at_most > 0:

@@ -39,7 +39,7 @@ def run(names: list[str], json: bool) -> None:
     require_tables(names)
     from coefficients.catalogue import resolve, with_published
     from coefficients.compare import compare
-    from shadefit.records import CompareOutput
+    from shadefit.outputs import CompareOutput
     from shadefit.terminal import print_json
 
     chosen = [resolve(name) for name in names or [owner.name for owner in with_published()]]

@@ -37,7 +37,8 @@ def cost(
     from coefficients.code_header import closed_form_beside, costs
     from programs import KINDS, measure_throughput
     from shadefit.commands.table_records import entry_fields
-    from shadefit.records import CostedTable, CostOutput
+    from shadefit.outputs import CostOutput
+    from shadefit.records import CostedTable
     from shadefit.terminal import print_json, print_table
 
     entry = resolve(table)

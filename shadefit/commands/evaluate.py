@@ -100,7 +100,8 @@ def run(
     require_quantities([name], "no integral is called")
     require_tables(extra)
     from shadefit.commands.table_records import entry_fields
-    from shadefit.records import EvaluatedTable, EvaluateOutput, Leg
+    from shadefit.outputs import EvaluateOutput
+    from shadefit.records import EvaluatedTable, Leg
     from shadefit.terminal import place, print_json, print_table
 
     owner = _owner(name)
@@ -156,7 +157,7 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     from coefficients.files import require_writable_file, write_whole_bytes
     from fitting import form_values
     from integrals.many_points import estimates_at_many
-    from shadefit.records import PointsOutput
+    from shadefit.outputs import PointsOutput
     from shadefit.terminal import print_json
 
     owner = _owner(name)

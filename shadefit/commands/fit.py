@@ -76,7 +76,7 @@ def fit(
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
     from integrals.data import table
-    from shadefit.records import FitOutput
+    from shadefit.outputs import FitOutput
     from shadefit.terminal import print_json
 
     columns = [part.strip() for part in x.split(",")]

@@ -11,7 +11,8 @@ if TYPE_CHECKING:
 def list_tables(json: Json = False) -> None:
     """List the tables that come with shadefit, with their names, forms, errors and domains."""
     from coefficients.packaged import kind_of, names, packaged_table
-    from shadefit.records import ListOutput, TableRecord, table_fields
+    from shadefit.outputs import ListOutput
+    from shadefit.records import TableRecord, table_fields
     from shadefit.terminal import print_json, print_table
 
     tables = {name: packaged_table(name) for name in names()}

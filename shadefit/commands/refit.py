@@ -20,6 +20,7 @@ from shadefit.commands.options import (
     goal_fields,
     opinion_text,
 )
+from shadefit.commands.selection import ALL, own_folder, parts, selection, table_name
 from shadefit.completion import complete_quantity
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from fitting.second_opinion import SecondOpinion as Opinion
     from quantities import Problem
 
-ALL = "all"
 # Two fits run at a time: while JAX compiles one on one core, the other uses a second core.
 WORKERS = 2
 # Nodes an axis, as in the paper.
@@ -109,8 +109,8 @@ def run(
 
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
+    from shadefit.outputs import RefitOutput
     from shadefit.progress import stages
-    from shadefit.records import RefitOutput
     from shadefit.terminal import print_json, print_table
 
     _require_measure(weight)
@@ -121,8 +121,8 @@ def run(
                 f"{owner.name} has a goal of its own:{_options(given)} is for the others"
             )
         chosen.remove(owner)
-    chosen = [part for each in chosen for part in _parts(each, forms or [])]
-    folders = [out or _own_folder(_name(each)) for each in chosen]
+    chosen = [part for each in chosen for part in parts(each, forms or [])]
+    folders = [out or own_folder(table_name(each)) for each in chosen]
     for folder in set(folders):
         require_writable(folder)
     with stages() as progress, ThreadPoolExecutor(WORKERS) as workers:
@@ -131,7 +131,7 @@ def run(
         def make(
             each: "tuple[Problem, Form] | Entry",
         ) -> "tuple[Table, Opinion | str | None] | str":
-            name = _name(each)
+            name = table_name(each)
             line = progress.begin(name)
             try:
                 found = _table(
@@ -186,30 +186,6 @@ def run(
                 print(f"{table.name}: {opinion_text(opinion)}")
 
 
-def selection(names: list[str]) -> "list[Problem | Entry]":
-    """Return the quantities and best tables with these names.
-
-    Quantities come first, in the order of the registry. 'all' stands for all of them; no name, for
-    those of the user's problem files or, if there are none, for all.
-    """
-    from coefficients.catalogue import resolve
-    from coefficients.packaged import names_of_best
-    from quantities import problem, problems
-    from quantities.registry import installed
-
-    for name in set(names) & set(installed()):
-        problem(name)  # Loads it.
-    every, best = problems(), names_of_best()
-    names = names or [owner.name for owner in every.values() if not owner.topic]
-    unknown = [name for name in names if name not in (*every, ALL, *best)]
-    if unknown:
-        allowed = ", ".join((*every, ALL, *best))
-        raise ValueError(f"nothing is called {unknown[0]!r}: allowed are {allowed}")
-    whole = not names or ALL in names
-    owners = [owner for name, owner in every.items() if whole or name in names]
-    return [*owners, *(resolve(name) for name in best if name in names)]
-
-
 def _require_measure(weight: str) -> None:
     """Raise ValueError for a measure that no quantity has."""
     from quantities import problems
@@ -227,40 +203,6 @@ def _has_own_goal(each: "Problem | Entry") -> bool:
 
     solver = each.default.solver if isinstance(each, Problem) else None
     return getattr(solver, "goal", LEAST_SQUARES) != LEAST_SQUARES
-
-
-def _own_folder(name: str) -> Path:
-    """Return the folder of a packaged table, relative to the working directory if it is inside."""
-    from coefficients.catalogue import is_kept, path_of
-    from coefficients.packaged import in_checkout
-
-    if not is_kept(name):
-        raise ValueError(f"{name} has no folder of its own: give one by --out")
-    if not in_checkout():
-        raise ValueError(f"{name} comes with an installed package: give a folder by --out")
-    folder, here = path_of(name).parent, Path.cwd()
-    return folder.relative_to(here) if folder.is_relative_to(here) else folder
-
-
-def _parts(each: "Problem | Entry", forms: list[str]) -> "list[tuple[Problem, Form] | Entry]":
-    """Return what is fitted: a best table, or a quantity with each of its forms that are wanted."""
-    from quantities import Problem
-
-    if not isinstance(each, Problem):
-        return [each]
-    if not forms or each.topic:
-        return [(each, each.default)]
-    if ALL in forms:
-        return [(each, form) for form in each.forms]
-    return [(each, each.find_form(name)) for name in dict.fromkeys(forms)]
-
-
-def _name(each: "tuple[Problem, Form] | Entry") -> str:
-    """Return the name of the table: that of the quantity for its first form."""
-    if not isinstance(each, tuple):
-        return each.name
-    owner, form = each
-    return owner.name if form is owner.default else f"{owner.name}-{form.name}"
 
 
 def _table(
@@ -286,7 +228,7 @@ def _table(
         weighted = f" --weight {weight}" if owner.topic else ""
         command = f"shadefit refit{file} {owner.name}{other}{on_grid}{weighted}{_options(given)}"
         made = fit(form, Goal(**given), nodes, weight, tell)
-        table = table_of(made, command, _name(each), owner)
+        table = table_of(made, command, table_name(each), owner)
         return table, _opinion(made) if second_opinion else None
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()

@@ -114,7 +114,7 @@ def check_settings(settings: "Settings") -> None:
 
 def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
-    from shadefit.records import RenderOutput
+    from shadefit.outputs import RenderOutput
     from shadefit.render.sweep import draw_sweep
     from shadefit.terminal import print_json
 
@@ -129,8 +129,8 @@ def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) ->
 def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
     from coefficients.textures.exr import write_exr
+    from shadefit.outputs import RenderOutput
     from shadefit.progress import stages
-    from shadefit.records import RenderOutput
     from shadefit.render.comparison import compare, exr_channels
     from shadefit.render.sheet import draw_comparisons
     from shadefit.terminal import print_json, print_table

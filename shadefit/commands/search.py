@@ -129,7 +129,7 @@ def _lower_ends(owner: "Problem", given: list[str]) -> dict[str, float]:
 
 
 def _print_json(quantity: str, result: "Result", good: "list[Found]") -> None:
-    from shadefit.records import SearchOutput
+    from shadefit.outputs import SearchOutput
     from shadefit.terminal import print_json
 
     def record(each: "Found") -> "FoundTable":

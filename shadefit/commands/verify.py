@@ -47,8 +47,9 @@ def verify(
     from coefficients.exported_code import trial_of
     from programs import check
     from shadefit.commands.table_records import entry_fields
+    from shadefit.outputs import VerifyOutput
     from shadefit.progress import stages
-    from shadefit.records import VerifiedTable, VerifyOutput
+    from shadefit.records import VerifiedTable
     from shadefit.terminal import print_json
 
     entries = {name: resolve(name) for name in tables}

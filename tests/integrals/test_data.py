@@ -8,7 +8,7 @@ import pytest
 
 from integrals.data import PROBLEM_FOLDER, column_names, samples, table
 from integrals.reference import Axis
-from integrals.sources import make_reference
+from integrals.reference_of_source import make_reference
 
 TEXT = "NdotV, alpha,E,sigma\n# a comment\n0.1,0.5,0.25,0.01\n0.2,0.5,0.5,0.02\n\n0.3,1,0.75,0.04\n"
 AXES = [Axis("mu", 0, 1), Axis("alpha", 0, 1)]

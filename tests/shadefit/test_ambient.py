@@ -21,7 +21,7 @@ from shadefit.ambient.radiances import (
 )
 from shadefit.ambient.sheet import interpolate_period
 from shadefit.cli import main
-from shadefit.records import AmbientOutput
+from shadefit.outputs import AmbientOutput
 from shadefit.render.functions import EXACT, table_sets
 from shading import (
     deferred_radiance,

@@ -9,7 +9,7 @@ from coefficients.catalogue import AS_PRINTED, names, resolve
 from programs import LANGUAGES
 from quantities import problems
 from shadefit import completion
-from shadefit.commands.refit import ALL, selection
+from shadefit.commands.selection import ALL, selection
 
 
 def test_the_names_that_are_repeated_are_the_real_ones():

@@ -6,15 +6,16 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-import shadefit.records
+import shadefit.outputs
 from coefficients.catalogue import resolve
 from coefficients.compare import compare
 from shadefit.cli import main
 from shadefit.commands.compare import contestants, record
 from shadefit.commands.table_records import entry_fields
-from shadefit.records import CompareOutput, Output, TableRecord, output_schema
+from shadefit.outputs import CompareOutput, Output, output_schema
+from shadefit.records import TableRecord
 
-SCHEMA = Path(shadefit.records.__file__).parent / "output.schema.json"
+SCHEMA = Path(shadefit.outputs.__file__).parent / "output.schema.json"
 DOCUMENTATION = Path(__file__).parents[2] / "docs" / "json.md"
 CHECKED = TypeAdapter(Output)
 TABLE = ("name", "kind", "quantity", "form", "equation", "file", "errors")

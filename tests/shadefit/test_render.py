@@ -19,7 +19,7 @@ from coefficients.textures.exr import write_exr
 from quantities.fuzz import PS, G, Q, R
 from shadefit.cli import main
 from shadefit.commands.render import run
-from shadefit.records import RenderOutput
+from shadefit.outputs import RenderOutput
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import CHOICES, EXACT, table_sets
 from shadefit.render.image import render_image

@@ -9,7 +9,7 @@ from fitting import Goal
 from quantities import problem
 from quantities.fuzz.supplement import RATIONAL_PS
 from shadefit.commands.search import search
-from shadefit.records import SearchOutput
+from shadefit.outputs import SearchOutput
 
 GOAL = Goal("l2", rounding="float32")
 
