@@ -48,6 +48,13 @@ def test_fused_operations_are_noticed(monkeypatch):
     pytest.fail(f"fused operations were not noticed: {found}")
 
 
+def test_numbers_below_the_smallest_normal_one_are_kept():
+    """A product of two numbers may be so small that only an upper bound above zero is right."""
+    kernel = kernel_of(lambda x: (x * 1e-160) * (x * 1e-160))
+    low, high, *_ = kernel.enclose(np.array([[0.5, 0.5]]))
+    assert low <= 0.25e-320 <= high and 0 < high < 1e-310
+
+
 def test_the_rounding_mode_is_restored():
     bound_largest(kernel_of(lambda x: x * (1 - x)), UNIT, 1.1)
     assert np.float64(1) + np.float64(2**-60) == 1

@@ -23,10 +23,12 @@ static int rounds_upward(void) {
     V a = all(one), b = all(tiny), c = all(three);
     V sum = a + b, difference = b - a, product = (a + b) * (a + b), quotient = a / c, s = vsqrt(c);
     V below = -a / c;
+    volatile double least = DBL_MIN;
+    V half = all(least) * 0.5;
     for (int i = 0; i < 8; ++i) {
         if (!(sum[i] > 1) || !(difference[i] > -1) || !(product[i] > 1 + 0x1p-52)) return 0;
         if (!(quotient[i] == 0x1.5555555555556p-2) || !(below[i] == -0x1.5555555555555p-2)) return 0;
-        if (!(s[i] == 0x1.bb67ae8584cabp+0)) return 0;
+        if (!(s[i] == 0x1.bb67ae8584cabp+0) || !(half[i] > 0)) return 0;
     }
     /* A fused multiply-add would find the rounding error of the product, which is not zero. x is
        read twice, so that the compiler does not see that both products are one. */
@@ -171,14 +173,21 @@ static void run(search *s) {
 }
 
 /* Called through a pointer that the compiler cannot see through, so that nothing moves across the
-   change of the rounding mode. */
+   change of the rounding mode. The default environment keeps numbers below DBL_MIN, which other
+   libraries may have set to be flushed to zero. */
 static void (*volatile hidden)(search *) = run;
 
-void shadefit_search(search *s) {
-    int mode = fegetround();
+static void round_upward(fenv_t *before) {
+    fegetenv(before);
+    fesetenv(FE_DFL_ENV);
     fesetround(FE_UPWARD);
+}
+
+void shadefit_search(search *s) {
+    fenv_t before;
+    round_upward(&before);
     hidden(s);
-    fesetround(mode);
+    fesetenv(&before);
 }
 
 /* Bounds of the error on single boxes, for tests: lower, upper, lower and upper of the centre. */
@@ -195,8 +204,8 @@ static void enclose_one(const double *box, double *bounds) {
 static void (*volatile hidden_one)(const double *, double *) = enclose_one;
 
 void shadefit_enclose(const double *box, double *bounds) {
-    int mode = fegetround();
-    fesetround(FE_UPWARD);
+    fenv_t before;
+    round_upward(&before);
     hidden_one(box, bounds);
-    fesetround(mode);
+    fesetenv(&before);
 }
