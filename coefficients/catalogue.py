@@ -165,7 +165,7 @@ def _self_contained(table: Table, form: Form) -> Problem:
         if about
         else "".join(part.capitalize() for part in re.split("[^A-Za-z0-9]+", table.quantity))
     )
-    summary = f"{form.reference.symbol}{{equation}}; clamps to the domain."
+    summary = f"{form.reference.symbol}; clamps to the domain."
     return Problem(form.reference, (form,), CallingConvention(function, summary, arguments))
 
 

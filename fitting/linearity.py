@@ -47,7 +47,8 @@ class LinearParts:
 @functools.lru_cache(maxsize=64)
 def program_of(form: Form) -> Program:
     """Trace a form. The inputs of the program are the flat coefficients, then the axes."""
-    coefficients = Parameter("c", _ANY, size=form.size) if form.size else None
+    # An axis may be called c.
+    coefficients = Parameter("coefficients__", _ANY, size=form.size) if form.size else None
     points = tuple(Parameter(axis.name, _ANY) for axis in form.axes)
 
     def call(*arguments):

@@ -291,7 +291,7 @@ def _calling(
     default = "".join(part[:1].upper() + part[1:] for part in name.replace("_", "-").split("-"))
     return CallingConvention(
         shader or default,
-        f"{symbol}{{equation}}; clamps to the domain.",
+        f"{symbol}; clamps to the domain.",
         tuple(Argument(axis.name, names.get(axis.name, axis.name), "both") for axis in axes),
     )
 

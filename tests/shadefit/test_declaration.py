@@ -160,3 +160,25 @@ def test_a_reference_that_is_nan_at_a_corner_is_refused():
 def test_an_argument_for_no_axis_is_refused():
     with pytest.raises(ValueError, match="arguments: 'y' is no axis: allowed are x"):
         sf.Problem("p", [X], sf.closed_form(jnp.tanh), arguments={"y": "why"})
+
+
+def test_an_axis_may_have_the_name_of_anything_inside():
+    axes = [sf.Axis("c", 0, 1), sf.Axis("v", 0, 1)]
+    problem = sf.Problem("named", axes, sf.closed_form(lambda c, v: 1 + c + v))
+    problem.polynomial(1)
+    result = problem.fit()
+    assert result.errors.largest < 1e-12
+    assert "float Named(float c, float v)" in result.code("hlsl")
+
+
+def test_an_axis_with_a_reserved_name_needs_another_one_in_the_shader():
+    axes = [sf.Axis("float", 0, 1)]
+    for arguments, refused in (({}, True), ({"float": "x"}, False)):
+        problem = sf.Problem("named", axes, sf.closed_form(lambda x: x), arguments=arguments)
+        problem.polynomial(1)
+        result = problem.fit()
+        if refused:
+            with pytest.raises(ValueError, match="name 'float' cannot be used in HLSL"):
+                result.code("hlsl")
+        else:
+            assert "float Named(float x)" in result.code("hlsl")
