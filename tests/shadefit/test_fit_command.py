@@ -131,3 +131,14 @@ def test_a_new_problem_file_replaces_none(run, tmp_path):
 def test_a_wrong_new_file_is_refused(run, tmp_path, arguments, message):
     assert message in run("new", *arguments, "--out", tmp_path, status=2)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_table_of_data_is_verified_without_the_data(run, data, tmp_path):
+    given = ["fit", data, "--x", "NdotV", "--y", "E", "--form", "rational:1,1", "--out", tmp_path]
+    run(*given)
+    told = json.loads(run("verify", tmp_path / "e.json", "--to", "python", "--json"))
+    (check,) = told["tables"][0]["checks"]
+    assert check["status"] == "passed"
+    assert check["form"]["max"] < 1e-6
+    assert check["integral"] is None
+    assert "—" in run("verify", tmp_path / "e.json", "--to", "python")
