@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from shadefit.figures.style import ERRORS, render
+from shadefit.figures.values import round_up
 from shadefit.render.comparison import Comparison
 from shadefit.render.srgb import to_srgb
 
@@ -59,11 +60,3 @@ def _draw(comparisons: list[Comparison]) -> Figure:
 
 def _high_quantile(difference: np.ndarray) -> float:
     return float(np.quantile(np.abs(difference), _QUANTILE))
-
-
-def round_up(value: float) -> float:
-    """Return the least 1, 2 or 5 times a power of ten that is not below `value`; at least 1e-9."""
-    if value <= 1e-9:
-        return 1e-9
-    power = 10.0 ** np.floor(np.log10(value))
-    return float(next(m * power for m in (1, 2, 5, 10) if m * power >= value))

@@ -19,6 +19,7 @@ from coefficients.textures.exr import write_exr
 from quantities.fuzz import PS, G, Q, R
 from shadefit.cli import main
 from shadefit.commands.render import run
+from shadefit.figures.values import round_up
 from shadefit.records import RenderOutput
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import CHOICES, EXACT, table_sets
@@ -26,7 +27,6 @@ from shadefit.render.image import render_image
 from shadefit.render.scenes import SCENES, cloth_height
 from shadefit.render.settings import Settings
 from shadefit.render.shade import _ROOTS, BACKDROP, interpolated_g, sky_coefficients
-from shadefit.render.sheet import round_up
 from shadefit.render.srgb import from_srgb, parse_colour, to_srgb
 from shading import irradiance, radiance
 
