@@ -18,8 +18,8 @@ from shadefit.figures.values import error_text, hints_of
 # The marker of the published table is large and hollow, so that a refit at the same place is seen
 # inside it.
 _SIZES = {"exact": 110, "published": 90}
-# A closed form of over _FAR times the operations of every table is not drawn. The axis of operations
-# is logarithmic if their ratio is above _WIDE.
+# A closed form of over _FAR times the operations of every table is not drawn. The axis of
+# operations is logarithmic if their ratio is above _WIDE.
 _FAR, _WIDE = 3, 12
 # Left, bottom, right and top, in points.
 _Box = tuple[float, float, float, float]
@@ -77,7 +77,7 @@ def draw_frontier() -> Figure:
     # The labels are placed last, because they avoid everything else.
     figure.draw_without_rendering()
     for axes, owner in zip(panels, drawn, strict=False):
-        _label(axes, shown[owner], figure.dpi / 72)
+        _label(axes, owner, shown[owner], figure.dpi / 72)
     return figure
 
 
@@ -124,8 +124,8 @@ def _panel(axes: Axes, owner: Problem, every: tuple[Mark, ...]) -> None:
     axes.set_axisbelow(True)
 
 
-def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
-    """Write the names of tables beside their marks; `dots` is the pixels of a point.
+def _label(axes: Axes, owner: Problem, every: tuple[Mark, ...], dots: float) -> None:
+    """Write the names of best tables beside their marks; `dots` is the pixels of a point.
 
     A name is placed where it covers nothing else. If it stands far from its mark, a thin line
     connects them. If there is no such place, the name is left out.
@@ -135,7 +135,9 @@ def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
     low, high = (axes.bbox.get_points() / dots).tolist()
     taken = [_box(*spot, 8.0, 8.0, -4.0, -4.0) for spot in spots]
     for mark, (x, y) in zip(every, spots, strict=True):
-        text = label_of_mark(mark)
+        if mark.kind not in ("best", "exact"):
+            continue
+        text = mark.name if mark.kind == "exact" else label_of_mark(mark, owner)
         width = _LETTER * len(text)
         for aside, up in _OFFSETS:
             right = aside if aside > 0 else aside - width
@@ -156,17 +158,16 @@ def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
                 textcoords="offset points",
                 ha="left" if aside > 0 else "right",
                 fontsize=7.5,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.75},
                 arrowprops={"arrowstyle": "-", "lw": 0.5, "color": "#777777"} if far else None,
             )
             break
 
 
-def label_of_mark(mark: Mark) -> str:
-    """Return the name of a table, and in brackets that of its form; 'closed form' stays as it is."""
-    if mark.kind == "exact":
-        return mark.name
-    form = resolve(mark.name).require_table().form
-    return f"{mark.name.removeprefix('best/')} ({form})"
+def label_of_mark(mark: Mark, owner: Problem) -> str:
+    """Return the name of a best table, and that of its form without the quantity's name."""
+    form = resolve(mark.name).require_table().form.removesuffix(f"-{owner.name}")
+    return f"{mark.name.removeprefix('best/')}, {form}"
 
 
 def _box(x: float, y: float, width: float, height: float, right: float, up: float) -> _Box:
