@@ -30,7 +30,7 @@ from shadefit.figures.values import (
 # The width of the whole page of error maps, and the height of a row, in inches.
 _WIDTH, _HEIGHT = 9.6, 2.7
 # The ends of the colour scales of errors, times a power of ten.
-_STEPS = (1, 1.5, 2, 3, 4, 5, 6, 8, 10)
+_STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
 def draw_surfaces(owner: Problem, names: Sequence[str]) -> Figure:

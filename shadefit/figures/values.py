@@ -72,7 +72,7 @@ def label_of(entry: Entry) -> str:
     return entry.kind if entry.kind in ("published", "refitted") else entry.name
 
 
-def round_up(value: float, steps: Sequence[float] = (1, 2, 5, 10)) -> float:
+def round_up(value: float, steps: Sequence[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
     """Return the least step times a power of ten that is not below `value`; at least 1e-9."""
     if value <= 1e-9:
         return 1e-9

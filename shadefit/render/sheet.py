@@ -46,7 +46,7 @@ def _draw(comparisons: list[Comparison], large: np.ndarray) -> Figure:
     scale = {"cmap": ERRORS, "vmin": -FACTOR * limit, "vmax": FACTOR * limit}
     hero = add(_LEFT, _ABOVE, _LARGE, _LARGE)
     hero.imshow(to_srgb(large))
-    hero.set_title("exact")
+    hero.set_title(f"{comparisons[-1].scene.name}, exact")
     for column, each in enumerate(comparisons):
         left = _LEFT + _LARGE + 0.3 + column * (_SMALL + _ASIDE)
         cells = [
