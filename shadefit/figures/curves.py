@@ -13,6 +13,8 @@ from shadefit.figures.values import axis_hints, exact, hints_of, points_along
 _NODES = 201
 # The free part above the largest value, as a fraction of the range of the values.
 _HEADROOM = 0.03
+# The least error that the logarithmic panel shows: the rounding of float64.
+_LEAST = 1e-16
 # The height of a name in the logarithmic panel, as a fraction of the panel.
 _NAME = 0.06
 
@@ -57,7 +59,7 @@ def draw_curves(owner: Problem) -> Figure:
                 zorder=1 if kind == "best" else 2,
             )
         if kind == "best":
-            ends[entry.name] = float(np.abs(error).max())
+            ends[entry.name] = max(float(np.abs(error).max()), _LEAST)
     panels[0].set(ylabel=hints.value_label or f"${owner.symbol}$")
     if hints.values is not None:
         low, high = hints.values
@@ -80,8 +82,8 @@ def _finish_logarithmic(axes: Axes, largest: dict[str, float]) -> None:
     higher if a name below it is too near.
     """
     peaks = [float(np.nanmax(line.get_ydata(orig=True))) for line in axes.get_lines()]
-    low, high = (10.0 ** np.floor(np.log10(max(x, 1e-300))) for x in (min(peaks), max(peaks)))
-    # Two decades below the least of the curves, which go down to zero where an error changes sign.
+    low, high = (10.0 ** np.floor(np.log10(max(x, _LEAST))) for x in (min(peaks), max(peaks)))
+    # One decade or two below the least curve: curves go down to zero where an error changes sign.
     axes.set(ylabel="|table − exact|", yscale="log", ylim=(low / 10, high * 10))
     axes.grid(axis="y", color="#e5e5e5", lw=0.6)
     axes.set_axisbelow(True)

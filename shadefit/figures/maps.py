@@ -75,8 +75,8 @@ def draw_surfaces(owner: Problem, names: Sequence[str]) -> Figure:
 def draw_errors(owner: Problem) -> Figure:
     """Map a quantity of two axes, and the signed errors of its tables.
 
-    The errors of each table have a colour scale of their own, which its title compares with the
-    first one. Tables that are not kept are left out; without any, only the exact values are drawn.
+    The errors of each table have a colour scale of their own. Tables that are not kept are left
+    out; without any, only the exact values are drawn.
     """
     hints, pairs = hints_of(owner), axis_hints(owner)
     first, second = (hint for _, hint in pairs)
@@ -94,8 +94,10 @@ def draw_errors(owner: Problem) -> Figure:
     panels = grid.ravel()
     x, y = points[..., 0] * first.factor, points[..., 1] * second.factor
     # Scales come first: contours put their labels where there is room.
-    for name, hint in (("x", first), ("y", second)):
-        panels[0].set(**{f"{name}scale": "log"} if hint.logarithmic else {})
+    if first.logarithmic:
+        panels[0].set(xscale="log")
+    if second.logarithmic:
+        panels[0].set(yscale="log")
     shown = panels[0].pcolormesh(x, y, truth, cmap=VALUES, rasterized=True, shading="gouraud")
     if np.ptp(truth) > 0:
         lines = panels[0].contour(x, y, truth, levels=8, colors="white", linewidths=0.7)

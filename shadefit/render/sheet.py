@@ -20,6 +20,8 @@ FACTOR = 50
 _LARGE, _SMALL, _ASIDE, _APART, _LEFT, _ABOVE = 6.0, 1.46, 0.12, 0.26, 0.06, 0.3
 # The colour scale ends at this quantile of the absolute differences.
 _QUANTILE = 0.995
+# The box behind a text on an image.
+_LABEL = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5}
 
 
 def draw_comparisons(comparisons: list[Comparison], large: np.ndarray) -> bytes:
@@ -43,7 +45,7 @@ def _draw(comparisons: list[Comparison], large: np.ndarray) -> Figure:
         return figure.add_axes(place)
 
     limit = round_up(max(_high_quantile(c.difference(name)) for c in comparisons for name in names))
-    scale = {"cmap": ERRORS, "vmin": -FACTOR * limit, "vmax": FACTOR * limit}
+    end = FACTOR * limit
     hero = add(_LEFT, _ABOVE, _LARGE, _LARGE)
     hero.imshow(to_srgb(large))
     hero.set_title(f"{comparisons[-1].scene.name}, exact")
@@ -57,7 +59,7 @@ def _draw(comparisons: list[Comparison], large: np.ndarray) -> Figure:
         cells[0].set_title(f"{each.scene.name}, exact")
         for axes, name in zip(cells[1:], names, strict=True):
             off = each.difference(name)
-            axes.imshow(FACTOR * off, **scale)
+            axes.imshow(FACTOR * off, cmap=ERRORS, vmin=-end, vmax=end)
             axes.set_title(f"({name} − exact) × {FACTOR}", fontsize=8.5, pad=3)
             text = f"largest {error_text(np.abs(off).max())}"
             axes.text(0.03, 0.03, text, transform=axes.transAxes, fontsize=7.5, bbox=_LABEL)
@@ -65,15 +67,12 @@ def _draw(comparisons: list[Comparison], large: np.ndarray) -> Figure:
         axes.set(xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
     bar = add(_LEFT + 1.2, _ABOVE + _LARGE + 0.22, _LARGE - 2.4, 0.12)
-    ends = ScalarMappable(Normalize(scale["vmin"], scale["vmax"]), ERRORS)
+    ends = ScalarMappable(Normalize(-end, end), ERRORS)
     options: dict[str, Any] = {"orientation": "horizontal", "extend": "both", "format": "{x:g}"}
-    options |= {"ticks": (scale["vmin"], 0, scale["vmax"])}
+    options |= {"ticks": (-end, 0, end)}
     label = f"difference of linear luminance × {FACTOR}"
     figure.colorbar(ends, cax=bar, label=label, **options)
     return figure
-
-
-_LABEL = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5}
 
 
 def _high_quantile(difference: np.ndarray) -> float:
