@@ -36,8 +36,11 @@ test-slow: setup  ## the full refits and the large sweeps
 test-wheel: setup  ## build the packages, install them into an empty environment, and test them there
 	$(BIN)/pytest -m wheel tests/test_wheel.py
 
-figures: setup  ## draw the figures of README.md and docs/gallery.md into docs/figures
+figures: setup  ## draw the pictures of README.md and docs/ into docs/figures
 	$(BIN)/shadefit figures --out docs/figures
+	$(BIN)/shadefit render --out docs/figures
+	$(BIN)/shadefit render cloth --sweep --fibers even --size 150 --out docs/figures
+	$(BIN)/shadefit ambient --out docs/figures
 
 docs: .venv/.docs  ## build the documentation site into build/site, and check its links
 	rm -rf build/site

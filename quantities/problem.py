@@ -137,7 +137,7 @@ class PlotHints:
     * `values` is the range of values that is drawn; None stands for the range of the exact values.
       `value_label` is its label and `exact_label` the legend of the exact values. Both may contain
       mathtext.
-    * The colour scale of error maps goes from −`largest_error` to `largest_error`.
+    * The colour scale of the explorer's error maps goes from −`largest_error` to `largest_error`.
     * Surfaces are seen from `azimuth`, in degrees, and have `surface_nodes` points an axis. Maps of
       errors have `map_nodes` points an axis.
     * `cost_label` is the label of an axis with the operations of forms.

@@ -46,7 +46,7 @@ def render(
     ] = "215deg",  # ty: ignore[invalid-parameter-default]
     sky: Annotated[float, typer.Option(help="Radiance of the sky.")] = 1.2,
     size: Annotated[
-        int, typer.Option(help="Width and height of an image in pixels, 16 to 1024.")
+        int, typer.Option(help="Width and height of a compared image in pixels, 16 to 1024.")
     ] = 256,
     sweep: Annotated[
         bool,
@@ -56,9 +56,9 @@ def render(
     ] = False,
     json: Json = False,
 ) -> None:
-    """Render velvet with exact functions and with tables, side by side.
+    """Render velvet with exact functions and with tables, and show their differences.
 
-    The files are render.png and render.exr.
+    The files are render.png, which shows the last scene large, and render.exr with every image.
     """
     from shadefit.render.settings import Settings
 
@@ -132,18 +132,23 @@ def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, j
     from shadefit.outputs import RenderOutput
     from shadefit.progress import stages
     from shadefit.render.comparison import compare, exr_channels
+    from shadefit.render.functions import EXACT
+    from shadefit.render.image import render_large
     from shadefit.render.sheet import draw_comparisons
     from shadefit.terminal import print_json, print_table
 
     comparisons = []
     with stages() as progress:
-        stage = progress.begin("", total=len(scenes))
+        stage = progress.begin("", total=len(scenes) + 1)
         for scene in scenes:
             stage.show(scene.name)
             comparisons.append(compare(scene, settings))
             stage.advance()
+        stage.show(f"{scenes[-1].name}, large")
+        large = render_large(scenes[-1], settings, EXACT)
+        stage.advance()
     sheet, exr = out / "render.png", out / "render.exr"
-    write_whole_bytes(sheet, draw_comparisons(comparisons))
+    write_whole_bytes(sheet, draw_comparisons(comparisons, large))
     write_whole_bytes(exr, write_exr(exr_channels(comparisons)))
     rows = [row for comparison in comparisons for row in comparison.statistics()]
     if json:

@@ -7,15 +7,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
+from coefficients.catalogue import resolve
 from coefficients.frontier import Mark, best_so_far, marks
 from quantities import Problem, problems
 from shadefit.figures.style import COLOURS, KINDS, MARKERS
-from shadefit.figures.values import hints_of
+from shadefit.figures.values import error_text, hints_of
 
 # The marker of the published table is large and hollow, so that a refit at the same place is seen
 # inside it.
 _SIZES = {"exact": 110, "published": 90}
+# A closed form of over _FAR times the operations of every table is not drawn. The axis of
+# operations is logarithmic if their ratio is above _WIDE.
+_FAR, _WIDE = 3, 12
 # Left, bottom, right and top, in points.
 _Box = tuple[float, float, float, float]
 # The width of a letter of a label, in points.
@@ -42,12 +47,18 @@ def drawn_quantities() -> list[Problem]:
 
 
 def draw_frontier() -> Figure:
-    """Draw the largest error of every table against its operations, one panel per quantity."""
-    figure = Figure(figsize=(9.6, 7.2), layout="constrained")
+    """Draw the largest error of every table against its operations, one panel per quantity.
+
+    A closed form that costs far more than every table is written below the panel, because it would
+    squeeze the tables.
+    """
     drawn = drawn_quantities()
-    panels = figure.subplots(-(-len(drawn) // 2), 2, sharex=True, squeeze=False).ravel()
+    rows = -(-len(drawn) // 2)
+    figure = Figure(figsize=(9.6, 4.1 * rows + 0.4), layout="constrained")
+    panels = figure.subplots(rows, 2, squeeze=False).ravel()
+    shown = {owner: near(marks(owner)) for owner in drawn}
     for axes, owner in zip(panels, drawn, strict=False):
-        _panel(axes, owner, marks(owner))
+        _panel(axes, owner, shown[owner])
     for axes in panels[len(drawn) :]:
         axes.set_visible(False)
     handles = [
@@ -60,14 +71,21 @@ def draw_frontier() -> Figure:
             label=label,
         )
         for kind, label in KINDS.items()
-        if any(mark.kind == kind for owner in drawn for mark in marks(owner))
+        if any(mark.kind == kind for every in shown.values() for mark in every)
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
     # The labels are placed last, because they avoid everything else.
     figure.draw_without_rendering()
     for axes, owner in zip(panels, drawn, strict=False):
-        _label(axes, marks(owner), figure.dpi / 72)
+        _label(axes, owner, shown[owner], figure.dpi / 72)
     return figure
+
+
+def near(every: Sequence[Mark]) -> tuple[Mark, ...]:
+    """Return the marks without a closed form that costs over `_FAR` times as much as any table."""
+    tables = [mark.operations for mark in every if mark.kind != "exact"]
+    limit = _FAR * max(tables, default=math.inf)
+    return tuple(mark for mark in every if mark.kind != "exact" or mark.operations <= limit)
 
 
 def _panel(axes: Axes, owner: Problem, every: tuple[Mark, ...]) -> None:
@@ -90,18 +108,24 @@ def _panel(axes: Axes, owner: Problem, every: tuple[Mark, ...]) -> None:
             marker=MARKERS[mark.kind],
             zorder=3,
         )
-    errors = np.log10([mark.largest for mark in every])
-    axes.set(yscale="log", xscale="log", title=f"${owner.symbol}$")
-    axes.set(xlabel=hints_of(owner).cost_label, ylabel="largest error")
-    axes.set_ylim(10 ** np.floor(errors.min() - 0.3), 10 ** np.ceil(errors.max() + 0.3))
-    axes.margins(x=0.1)
-    axes.tick_params(labelbottom=True)
+    label = hints_of(owner).cost_label
+    for mark in marks(owner):
+        if mark not in every:
+            error = error_text(mark.largest)
+            label += f"\n(★ {mark.name}: {mark.operations:,} operations, error {error})"
+    axes.set(yscale="log", title=f"${owner.symbol}$", xlabel=label, ylabel="largest error")
+    axes.margins(x=0.12, y=0.1)
+    costs = [mark.operations for mark in every]
+    if max(costs) > _WIDE * min(costs):
+        axes.set(xscale="log")
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.grid(color="#e5e5e5", lw=0.6)
     axes.set_axisbelow(True)
 
 
-def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
-    """Write the names of the best tables beside their marks; `dots` is the pixels of a point.
+def _label(axes: Axes, owner: Problem, every: tuple[Mark, ...], dots: float) -> None:
+    """Write the names of best tables beside their marks; `dots` is the pixels of a point.
 
     A name is placed where it covers nothing else. If it stands far from its mark, a thin line
     connects them. If there is no such place, the name is left out.
@@ -111,9 +135,9 @@ def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
     low, high = (axes.bbox.get_points() / dots).tolist()
     taken = [_box(*spot, 8.0, 8.0, -4.0, -4.0) for spot in spots]
     for mark, (x, y) in zip(every, spots, strict=True):
-        if mark.kind != "best":
+        if mark.kind not in ("best", "exact"):
             continue
-        text = mark.name.removeprefix("best/")
+        text = mark.name if mark.kind == "exact" else label_of_mark(mark, owner)
         width = _LETTER * len(text)
         for aside, up in _OFFSETS:
             right = aside if aside > 0 else aside - width
@@ -134,9 +158,16 @@ def _label(axes: Axes, every: tuple[Mark, ...], dots: float) -> None:
                 textcoords="offset points",
                 ha="left" if aside > 0 else "right",
                 fontsize=7.5,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.75},
                 arrowprops={"arrowstyle": "-", "lw": 0.5, "color": "#777777"} if far else None,
             )
             break
+
+
+def label_of_mark(mark: Mark, owner: Problem) -> str:
+    """Return the name of a best table, and that of its form without the quantity's name."""
+    form = resolve(mark.name).require_table().form.removesuffix(f"-{owner.name}")
+    return f"{mark.name.removeprefix('best/')}, {form}"
 
 
 def _box(x: float, y: float, width: float, height: float, right: float, up: float) -> _Box:

@@ -17,8 +17,9 @@ _FRONTIER = Picture(
     "The largest error of every table against the operations of its exported function (for P_s, of "
     "the function of a direction). Errors are measured on the domain of the published table "
     "(α ≥ 0.15 for P_s and R); 'shadefit list' gives the error of a -wide table on its own domain. "
-    "The error of the closed form is that of its evaluation in float32. The grey steps join the "
-    "tables that no other table beats in both cost and error.",
+    "The error of the closed form is that of its evaluation in float32; where it costs far more "
+    "than every table, it is below the panel. After the name of a table comes that of its form. "
+    "The grey steps join the tables that no other table beats in both cost and error.",
     draw_frontier,
 )
 

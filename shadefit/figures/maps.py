@@ -1,26 +1,47 @@
 """Pictures of a quantity of two axes: surfaces, and maps of the signed errors of its tables."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from coefficients.catalogue import resolve
+from coefficients.exported_code import operations_of
 from quantities import Problem
 from shadefit.figures.style import ERRORS, VALUES, space
-from shadefit.figures.values import axis_hints, compared_values, hints_of, mesh, points_along
+from shadefit.figures.values import (
+    axis_hints,
+    best_tables,
+    compared_tables,
+    compared_values,
+    error_text,
+    hints_of,
+    label_of,
+    mesh,
+    points_along,
+    round_up,
+)
+
+# The width of the whole page of error maps, and the height of a row, in inches.
+_WIDTH, _HEIGHT = 9.6, 2.7
+# The ends of the colour scales of errors, times a power of ten.
+_STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
-def draw_surfaces(owner: Problem) -> Figure:
-    """Draw a quantity over its two axes, in their own units: exact, published and refitted."""
+def draw_surfaces(owner: Problem, names: Sequence[str]) -> Figure:
+    """Draw a quantity over its two axes, in their own units: exact, and by the named tables."""
     hints, pairs = hints_of(owner), axis_hints(owner)
     points = mesh(*(points_along(hint, hints.surface_nodes) for _, hint in pairs))
-    values = compared_values(owner, points)
+    values = compared_values(owner, points, map(resolve, names))
     bounds = hints.values or _range(values["exact"])
     figure = Figure(figsize=(9.6, 3.6))
     for column, (title, heights) in enumerate(values.items()):
-        place = (0.005 + 0.325 * column, 0.19, 0.31, 0.8)
+        place = (0.025 + 0.325 * column, 0.19, 0.31, 0.8)
         axes = space(figure, place)
         axes.plot_surface(
             points[..., 0],
@@ -52,64 +73,65 @@ def draw_surfaces(owner: Problem) -> Figure:
 
 
 def draw_errors(owner: Problem) -> Figure:
-    """Map a quantity of two axes, and the signed errors of its published and refitted table.
+    """Map a quantity of two axes, and the signed errors of its tables.
 
-    Tables that are not kept are left out; without any, only the exact values are drawn.
+    The errors of each table have a colour scale of their own. Tables that are not kept are left
+    out; without any, only the exact values are drawn.
     """
     hints, pairs = hints_of(owner), axis_hints(owner)
     first, second = (hint for _, hint in pairs)
     points = mesh(
         *(points_along(h, hints.map_nodes, logarithmic=h.logarithmic) for h in (first, second))
     )
-    values = compared_values(owner, points)
-    figure = Figure(figsize=(round(3.2 * len(values), 1), 3.5), layout="constrained")
-    grid = figure.subplots(1, len(values), sharey=True, squeeze=False)[0]
-    truth = values.pop("exact")
+    tables = [*compared_tables(owner), *best_tables(owner)]
+    truth, *columns = compared_values(owner, points, tables).values()
+    # Three or four columns, whichever leaves fewer places empty.
+    wide = min(1 + len(tables), min((3, 4), key=lambda n: -(1 + len(tables)) % n))
+    high = -(-(1 + len(tables)) // wide)
+    width = _WIDTH * min(wide, 3) / 3
+    figure = Figure(figsize=(width, _HEIGHT * high), layout="constrained")
+    grid = figure.subplots(high, wide, sharex=True, sharey=True, squeeze=False)
+    panels = grid.ravel()
     x, y = points[..., 0] * first.factor, points[..., 1] * second.factor
-    scales = {
-        f"{name}scale": "log" for name, hint in (("x", first), ("y", second)) if hint.logarithmic
-    }
     # Scales come first: contours put their labels where there is room.
-    grid[0].set(**scales)
-    shown = grid[0].pcolormesh(x, y, truth, cmap=VALUES, rasterized=True, shading="gouraud")
+    if first.logarithmic:
+        panels[0].set(xscale="log")
+    if second.logarithmic:
+        panels[0].set(yscale="log")
+    shown = panels[0].pcolormesh(x, y, truth, cmap=VALUES, rasterized=True, shading="gouraud")
     if np.ptp(truth) > 0:
-        lines = grid[0].contour(x, y, truth, levels=8, colors="white", linewidths=0.7)
-        grid[0].clabel(lines, fontsize=7.5)
-    grid[0].set_title("exact")
-    errors = shown
-    largest = hints.largest_error
-    for axes, (label, column) in zip(grid[1:], values.items(), strict=True):
-        signed = column - truth
-        errors = axes.pcolormesh(
-            x,
-            y,
-            np.clip(signed, -largest, largest),
-            cmap=ERRORS,
-            vmin=-largest,
-            vmax=largest,
-            rasterized=True,
-            shading="gouraud",
-        )
-        if signed.min() < 0 < signed.max():
-            axes.contour(x, y, signed, levels=[0], colors="#555555", linewidths=0.7)
-        worst = np.abs(signed).max()
-        axes.set_title(f"{label} − exact (up to {worst:.2g} here)")
-    for axes in grid:
-        axes.set(xlabel=first.shown_label)
-        axes.set(**scales)
-    grid[0].set_ylabel(second.shown_label)
-    figure.colorbar(shown, ax=grid[0], location="bottom", label=f"${owner.symbol}$", aspect=30)
-    if values:
-        figure.colorbar(
-            errors,
-            ax=grid[1:],
-            location="bottom",
-            label=f"error of ${owner.symbol}$",
-            extend="both",
-            aspect=50,
-            ticks=[-largest, -largest / 2, 0, largest / 2, largest],
-        )
+        lines = panels[0].contour(x, y, truth, levels=8, colors="white", linewidths=0.7)
+        panels[0].clabel(lines, fontsize=7.5)
+    panels[0].set_title("exact\n")
+    figure.colorbar(shown, ax=panels[0], label=f"${owner.symbol}$", aspect=25)
+    for axes, table, values in zip(panels[1:], tables, columns, strict=False):
+        signed = values - truth
+        worst = float(np.abs(signed).max())
+        _error_map(figure, axes, x, y, signed)
+        facts = (f"{operations_of(table)} operations", f"largest {error_text(worst)}")
+        lines = (f"{label_of(table)} − exact", *(facts if wide == 4 else (", ".join(facts),)))
+        axes.set_title("\n".join(lines))
+    for axes in panels[1 + len(tables) :]:
+        axes.set_visible(False)
+    for row in range(high):
+        grid[row, 0].set_ylabel(second.shown_label)
+    for column in range(wide):
+        # The lowest panel of a column that is drawn.
+        low = max(row for row in range(high) if row * wide + column <= len(tables))
+        grid[low, column].set_xlabel(first.shown_label)
+        grid[low, column].tick_params(labelbottom=True)
     return figure
+
+
+def _error_map(figure: Figure, axes: Axes, x: np.ndarray, y: np.ndarray, signed: np.ndarray):
+    """Map signed errors on a colour scale that ends a little above the largest."""
+    limit = round_up(float(np.abs(signed).max()), _STEPS)
+    shown = axes.pcolormesh(
+        x, y, signed, cmap=ERRORS, vmin=-limit, vmax=limit, rasterized=True, shading="gouraud"
+    )
+    if signed.min() < 0 < signed.max():
+        axes.contour(x, y, signed, levels=[0], colors="#555555", linewidths=0.7)
+    figure.colorbar(shown, ax=axes, ticks=(-limit, 0, limit), format="{x:g}", aspect=25)
 
 
 def _own_label(label: str, unit: str) -> str:

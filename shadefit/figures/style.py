@@ -38,7 +38,7 @@ KINDS = {
     "printed": "published, as printed",
     "published": "published",
     "refitted": "refitted, same form",
-    "best": "other forms",
+    "best": "best, other forms",
     "exact": "closed form, in float32",
 }
 # Each kind has a colour of Okabe and Ito, a dash pattern and a marker, so that no two kinds differ

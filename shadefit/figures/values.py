@@ -1,8 +1,10 @@
 """What is drawn of a quantity: its hints, and exact and exported values on grids of points."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 
-from coefficients.catalogue import published, refitted
+from coefficients.catalogue import Entry, entries, published, refitted
 from coefficients.exported_code import exported_values
 from integrals.reference import Axis, Reference
 from quantities import Problem
@@ -36,14 +38,51 @@ def exact(reference: Reference, points: np.ndarray) -> np.ndarray:
     return reference.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
 
 
-def compared_values(owner: Problem, points: np.ndarray) -> dict[str, np.ndarray]:
-    """Evaluate the exact values, and the published and refitted table as far as they are kept.
+def best_tables(owner: Problem) -> list[Entry]:
+    """Return the best tables of a quantity, the one with the largest stated error first."""
+    found = [entry for entry in entries(owner) if entry.kind == "best"]
+    return sorted(found, key=_stated_error, reverse=True)
+
+
+def _stated_error(entry: Entry) -> float:
+    errors = entry.require_table().errors
+    return np.inf if errors is None else errors.off_grid.max
+
+
+def compared_tables(owner: Problem) -> list[Entry]:
+    """Return the published and the refitted table of a quantity, as far as they are kept."""
+    return [entry for entry in (published(owner), refitted(owner)) if entry is not None]
+
+
+def compared_values(
+    owner: Problem, points: np.ndarray, tables: Iterable[Entry] | None = None
+) -> dict[str, np.ndarray]:
+    """Evaluate the exact values and tables; None stands for `compared_tables`.
 
     Tables are evaluated by their exported functions, with the clamps. Returns values (…) at points
     (…, axes), by label.
     """
+    chosen = compared_tables(owner) if tables is None else tables
     values = {"exact": exact(owner.reference, points)}
-    for label, entry in (("published", published(owner)), ("refitted", refitted(owner))):
-        if entry is not None:
-            values[label] = exported_values(entry, points)
-    return values
+    return values | {label_of(entry): exported_values(entry, points) for entry in chosen}
+
+
+def label_of(entry: Entry) -> str:
+    """Return what pictures call a table: 'published', 'refitted', or its name."""
+    return entry.kind if entry.kind in ("published", "refitted") else entry.name
+
+
+def round_up(value: float, steps: Sequence[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
+    """Return the least step times a power of ten that is not below `value`; at least 1e-9."""
+    if value <= 1e-9:
+        return 1e-9
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(next(m * power for m in steps if m * power >= value))
+
+
+def error_text(value: float) -> str:
+    """Return an error with two digits, such as 0.014 or 8.0e-5."""
+    if abs(value) >= 1e-3:
+        return f"{value:#.2g}"
+    digits, exponent = f"{value:.1e}".split("e")
+    return f"{digits}e{int(exponent)}"

@@ -47,11 +47,10 @@ class Comparison:
 def compare(scene: Scene, settings: Settings) -> Comparison:
     """Render a scene with exact functions and with every set of tables."""
     every = (EXACT, *table_sets())
-    # The hits are computed once, before the threads below, and kept.
-    scene.hits(settings.size * SAMPLES)
+    hits = scene.hits(settings.size * SAMPLES)
     # Compiling one image uses one core; a second thread uses another core for the next image.
     with ThreadPoolExecutor(2) as workers:
-        images = list(workers.map(lambda each: render_image(scene, settings, each), every))
+        images = list(workers.map(lambda each: render_image(scene, settings, each, hits), every))
     exact, *others = images
     names = [each.name for each in every[1:]]
     return Comparison(scene, exact, dict(zip(names, others, strict=True)))

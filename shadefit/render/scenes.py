@@ -4,7 +4,6 @@ World axes: x to the right, y away from the camera, z up. Arrays have one row fo
 square image, in the order of its rows from the top left.
 """
 
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,6 +18,8 @@ _STEPS, _HALVINGS, _SHADOW_STEPS = 80, 12, 24
 # The horizon around a point of the cloth is searched in _AZIMUTHS directions, in _HORIZON_STEPS
 # steps each.
 _AZIMUTHS, _HORIZON_STEPS = 8, 8
+# The first row of an image and the one after the last; None stands for all rows.
+Rows = tuple[int, int] | None
 
 
 @dataclass(frozen=True)
@@ -46,21 +47,24 @@ class Hits:
 class Scene:
     """A surface with a camera.
 
-    * `hits(size)`: the points that the samples see of an image of `size` × `size` samples.
+    * `hits(size, rows)`: the points that the samples see of an image of `size` × `size` samples;
+      without `rows` all of them, otherwise those of the rows from `rows[0]` to below `rows[1]`.
     * `sunlit(position, sun)`: the visible part (n,) of the sun, 0 to 1, at points (n, 3). `sun`
       (3,) is the unit vector to the sun.
     """
 
     name: str
-    hits: Callable[[int], Hits]
+    hits: Callable[..., Hits]
     sunlit: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
-def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the position (3,) of a perspective camera and its rays' unit directions (size², 3).
+def camera(
+    size: int, eye: tuple, target: tuple, width: float, rows: Rows = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the position (3,) of a perspective camera and its rays' unit directions (n, 3).
 
     The camera is at `eye`, looks at `target`, and z is up. `width` is the width of what it sees at
-    the distance of `target`.
+    the distance of `target`. There are n = size² rays, or size for each of the `rows`.
     """
     eye_, target_ = np.array(eye, float), np.array(target, float)
     ahead = (target_ - eye_) / np.linalg.norm(target_ - eye_)
@@ -68,15 +72,14 @@ def camera(size: int, eye: tuple, target: tuple, width: float) -> tuple[np.ndarr
     right /= np.linalg.norm(right)
     up = np.cross(right, ahead)
     line = ((np.arange(size) + 0.5) / size - 0.5) * width / np.linalg.norm(target_ - eye_)
-    x, y = np.meshgrid(line, -line)
+    x, y = np.meshgrid(line, -line[slice(*rows) if rows else slice(None)])
     rays = ahead + x[..., None] * right + y[..., None] * up
     rays = rays.reshape(-1, 3)
     return eye_, rays / np.linalg.norm(rays, axis=1, keepdims=True)
 
 
-@functools.cache
-def _sphere_hits(size: int) -> Hits:
-    eye, rays = camera(size, (0, -6, 1.6), (0, 0, 0), 2.3)
+def _sphere_hits(size: int, rows: Rows = None) -> Hits:
+    eye, rays = camera(size, (0, -6, 1.6), (0, 0, 0), 2.3, rows)
     along = rays @ eye
     discriminant = along**2 - (eye @ eye - 1)
     seen = discriminant > 0
@@ -101,9 +104,8 @@ def cloth_height(x: Array, y: Array) -> Array:
     return ball + (1 - 0.9 * jnp.exp(-r2 / 0.4)) * (folds + crease)
 
 
-@functools.cache
-def _cloth_hits(size: int) -> Hits:
-    eye, rays = camera(size, (0, -4.2, 4.4), (0, 0, 0.1), 2.9)
+def _cloth_hits(size: int, rows: Rows = None) -> Hits:
+    eye, rays = camera(size, (0, -4.2, 4.4), (0, 0, 0.1), 2.9, rows)
     position = np.array(_march(_single(eye), _single(rays)), float)
     position[:, 2] = cloth_height(jnp.asarray(position[:, 0]), jnp.asarray(position[:, 1]))
     normal = np.asarray(_cloth_normal(jnp.asarray(position)))

@@ -9,7 +9,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from shadefit.figures.style import render
 from shadefit.render.functions import EXACT
-from shadefit.render.image import render_image
+from shadefit.render.image import SAMPLES, render_image
 from shadefit.render.scenes import Scene
 from shadefit.render.settings import Settings
 from shadefit.render.srgb import to_srgb
@@ -28,11 +28,13 @@ def draw_sweep(scene: Scene, settings: Settings) -> bytes:
     A row has one density and spread, a column has one tilt; they replace those of `settings`.
     """
     layers = list(product(DENSITIES, SPREADS))
+    hits = scene.hits(settings.size * SAMPLES)
     images = {
         (layer, tilt): render_image(
             scene,
             replace(settings, density=layer[0], spread=layer[1], tilt=float(np.radians(tilt))),
             EXACT,
+            hits,
         )
         for layer in layers
         for tilt in TILTS

@@ -19,14 +19,16 @@ from coefficients.textures.exr import write_exr
 from quantities.fuzz import PS, G, Q, R
 from shadefit.cli import main
 from shadefit.commands.render import run
+from shadefit.figures.values import round_up
 from shadefit.outputs import RenderOutput
+from shadefit.render import image, sheet
+from shadefit.render.comparison import Comparison
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import CHOICES, EXACT, table_sets
 from shadefit.render.image import render_image
 from shadefit.render.scenes import SCENES, cloth_height
 from shadefit.render.settings import Settings
 from shadefit.render.shade import _ROOTS, BACKDROP, interpolated_g, sky_coefficients
-from shadefit.render.sheet import round_up
 from shadefit.render.srgb import from_srgb, parse_colour, to_srgb
 from shading import irradiance, radiance
 
@@ -193,6 +195,42 @@ def test_visible_points_lie_on_the_surface(scene):
     assert np.all((hits.open_sky > 0) & (hits.open_sky <= 1))
 
 
+@pytest.mark.parametrize("name", ["sphere", pytest.param("cloth", marks=pytest.mark.slow)])
+def test_bands_of_rows_are_the_whole(name):
+    scene = SCENES[name]
+    whole = scene.hits(SIZE)
+    bands = [scene.hits(SIZE, rows) for rows in ((0, 10), (10, SIZE))]
+    for field, values in vars(whole).items():
+        together = np.concatenate([getattr(band, field) for band in bands])
+        # The rays to the cloth are float32, in which compilation may change the last bits.
+        np.testing.assert_allclose(together, values, atol=1e-5)
+
+
+@pytest.mark.slow
+def test_the_large_image_is_the_average_of_its_samples(monkeypatch):
+    settings = Settings(size=SIZE)
+    monkeypatch.setattr(image, "_BAND", 7 * SIZE * 4)
+    monkeypatch.setattr(image, "LARGE", 10)
+    monkeypatch.setattr(image, "LARGE_SAMPLES", 2)
+    large = image.render_large(SCENES["sphere"], settings, EXACT)
+    np.testing.assert_allclose(large, render_image(SCENES["sphere"], settings, EXACT), rtol=1e-9)
+
+
+def test_the_sheet_shows_differences_fifty_times_as_large():
+    noise = np.random.default_rng(3)
+    exact, *others = 0.3 + 0.01 * noise.random((3, SIZE, SIZE, 3))
+    compared = Comparison(SCENES["sphere"], exact, dict(zip(("one", "two"), others, strict=True)))
+    figure = sheet._draw([compared], exact)
+    shown = {axes.get_title(): axes for axes in figure.axes if axes.get_images()}
+    assert list(shown)[:2] == ["sphere, exact", "(one − exact) × 50"]
+    hero = figure.axes[0].get_window_extent()
+    for name in ("one", "two"):
+        axes = shown[f"({name} − exact) × 50"]
+        (pixels,) = axes.get_images()
+        np.testing.assert_allclose(pixels.get_array(), 50 * compared.difference(name))
+        assert axes.get_window_extent().width < hero.width / 3
+
+
 @pytest.mark.slow
 def test_without_a_layer_the_sphere_is_lambertian():
     """At density 0 the radiance is base (E_sun max(u·n, 0) + E_sky)/π."""
@@ -308,3 +346,4 @@ def test_the_sweep_is_drawn(tmp_path):
 
 def test_limits_are_round():
     assert [round_up(x) for x in (0.0011, 0.002, 0.3, 7.0)] == [0.002, 0.002, 0.5, 10.0]
+    assert round_up(0.0012, (1.0, 1.5, 10.0)) == 0.0015
