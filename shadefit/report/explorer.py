@@ -5,6 +5,7 @@ A table is evaluated by its exported functions, with the clamps, as in a rendere
 """
 
 import json
+import re
 from dataclasses import dataclass, field
 from importlib.resources import files
 
@@ -12,19 +13,25 @@ import numpy as np
 from matplotlib import colormaps
 
 from coefficients.catalogue import Entry, entries
-from programs import Function, Parameter, function, write_source
+from programs import Function, Parameter, function, language, write_source
 from quantities import Problem, problems
 from quantities.problem import AverageHint, HemisphereHint
 from shadefit.figures.style import ERRORS, VALUES
 from shadefit.figures.values import axis_hints, hints_of
+from shadefit.report.code import LISTED, codes
 
-SCRIPTS = ("explorer_model.js", "explorer_draw.js", "explorer_pictures.js", "explorer.js")
+# The first ones need no page.
+MODEL = ("explorer_model.js", "explorer_scales.js", "explorer_address.js")
+SCRIPTS = (
+    *MODEL,
+    *("explorer_draw.js", "explorer_pictures.js", "explorer_code.js", "explorer.js"),
+)
 _COLOURS = 33
 # JSON has no infinity: an end of a domain beyond this is no end.
 _LARGEST = 1e9
 _SUBSCRIPTS = dict(zip("aehijklmnoprstuvx0123456789", "ₐₑₕᵢⱼₖₗₘₙₒₚᵣₛₜᵤᵥₓ₀₁₂₃₄₅₆₇₈₉", strict=True))
-# The kinds of tables that are drawn before the reader chooses others.
-_SHOWN = ("published", "refitted")
+# So many of the best tables of a quantity are drawn before the reader chooses others.
+_BEST_SHOWN = 3
 
 
 @dataclass
@@ -57,8 +64,8 @@ def script() -> str:
     ]
     own = [files("shadefit.report").joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS]
     parts = ['"use strict";', "(() => {", printed(functions), *given, *own, "})();"]
-    # HTML ends a script at the first "</script", even within a string.
-    return "\n".join(parts).replace("</", "<\\/")
+    # HTML ends a script at the first "</script", even within a string, and "<!--" hides that end.
+    return re.sub(r"<(?=/|!--)", r"<\\", "\n".join(parts))
 
 
 def printed(functions: dict[str, Function]) -> str:
@@ -71,6 +78,7 @@ def functions_and_data(owners: list[Problem]) -> tuple[dict[str, Function], dict
     page = _Printed()
     known = {
         "quantities": [_quantity(page, owner) for owner in owners],
+        "languages": [{"key": key, "name": language(key).name} for key in LISTED],
         "colours": {"values": _ramp(VALUES), "errors": _ramp(ERRORS)},
     }
     return page.functions, known
@@ -84,10 +92,12 @@ def identifier(entry: Entry) -> str:
 
 def _quantity(page: _Printed, owner: Problem) -> dict:
     """Return the data of a quantity, and add the functions that it is evaluated by."""
-    hints = hints_of(owner)
+    hints, own = hints_of(owner), entries(owner)
+    drawn = drawn_at_first(own)
     return {
         "name": owner.name,
         "symbol": _with_subscript(owner.symbol),
+        "about": owner.reference.meaning,
         "axes": [
             {
                 "name": axis.name,
@@ -98,17 +108,34 @@ def _quantity(page: _Printed, owner: Problem) -> dict:
                 "start": hint.start,
                 "factor": hint.factor,
                 "unit": hint.unit,
+                "logarithmic": hint.logarithmic and hint.slider[0] > 0,
             }
             for axis, hint in axis_hints(owner)
         ],
         "against": hints.against or owner.axes[-1].name,
-        "values": list(hints.values or ()),
-        "largestError": hints.largest_error,
         "exact": page.add(_exact(owner)) if owner.closed_form else None,
         "average": _average(page, hints.average),
         "hemisphere": _hemisphere(hints.hemisphere),
-        "tables": [_table(page, entry) for entry in entries(owner)],
+        "tables": [_table(page, entry) | {"shown": entry in drawn} for entry in own],
+        "codes": codes(owner, own),
     }
+
+
+def drawn_at_first(own: list[Entry]) -> list[Entry]:
+    """Return the tables that are drawn before the reader chooses others.
+
+    They are the published table, and of the best tables those with the least, a middle, and the
+    largest number of coefficients. Without best tables they are all but those as printed.
+    """
+    best = sorted(
+        (entry for entry in own if entry.kind == "best"),
+        key=lambda entry: (entry.require_table().size, entry.name),
+    )
+    if not best:
+        return [entry for entry in own if entry.kind != "printed"]
+    places = np.linspace(0, len(best) - 1, min(_BEST_SHOWN, len(best))).round().astype(int)
+    published = [entry for entry in own if entry.kind == "published"]
+    return [*published, *(best[place] for place in places)]
 
 
 def _table(page: _Printed, entry: Entry) -> dict:
@@ -131,7 +158,6 @@ def _table(page: _Printed, entry: Entry) -> dict:
             [max(float(axis.lower), -_LARGEST), min(float(axis.upper), _LARGEST)]
             for axis in form.axes
         ],
-        "shown": entry.kind in _SHOWN,
     }
 
 
