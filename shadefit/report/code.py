@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from coefficients.catalogue import EXACT, Entry, resolve
 from coefficients.exported_code import LICENCE, LICENCE_LABEL
-from coefficients.proof_text import proof_text
+from coefficients.proof_text import proofs
 from programs import write_source
 from programs.toolchains.difference import Difference, text_of
 from quantities import Problem
@@ -47,7 +47,7 @@ def _header(entry: Entry) -> dict[str, str]:
     if entry.fitted is not None and entry.fitted.form.notation:
         head["Names"] = entry.fitted.form.notation
     if entry.table is not None:
-        proven = proof_text(entry.table.certificates)
+        proven = proofs(entry)
         if proven:
             head["Proven in exact arithmetic"] = "; ".join(proven)
         if entry.table.errors is not None:

@@ -36,6 +36,7 @@ function readAddress(address) {
         if (allowed.includes(said.get(name))) choices[name] = said.get(name);
     const language = known.languages.find((each) => each.key === said.get("language"));
     if (language) choices.language = language.key;
-    if (current.codes.some((each) => each.name === said.get("code"))) choices.code = said.get("code");
+    const code = codes[current.name].find((each) => each.name === said.get("code"));
+    if (code) choices.code = code.name;
     return wrong;
 }

@@ -1,17 +1,17 @@
 // The shader code of the table one looks at, and a button that copies it.
 
 function codeOf(name) {
-    return current.codes.find((each) => each.name === name);
+    return codes[current.name].find((each) => each.name === name);
 }
 
-// Offers the codes of the current quantity. Without a choice it is that of the last drawn table.
+// Offers the codes of the current quantity. Without a choice it is that of the best drawn table.
 function fillCodes() {
-    const { codes } = current;
-    find("code").hidden = !codes.length;
-    if (!codes.length) return;
+    const own = codes[current.name];
+    find("code").hidden = !own.length;
+    if (!own.length) return;
     if (!codeOf(choices.code))
-        choices.code = (codeOf(chosenTables().at(-1)?.name) ?? codes[0]).name;
-    find("code-of").replaceChildren(...codes.map(({ name }) =>
+        choices.code = (codeOf(current.code) ?? own[0]).name;
+    find("code-of").replaceChildren(...own.map(({ name }) =>
         new Option(name, name, false, name === choices.code)));
     showCode();
 }

@@ -57,7 +57,7 @@ function drawCharts() {
     });
     find("values-chart").toPlace = (clientX) => toPlace(clientX) / factor;
     find("errors-chart").toPlace = find("values-chart").toPlace;
-    find("errors-chart").hidden = !hasExact(current);
+    find("errors-chart").hidden = find("scales").hidden = !hasExact(current);
     find("no-exact").hidden = hasExact(current);
     if (hasExact(current)) drawErrors(chosen, fitted, truth, { ...common, line, range, small });
 }
@@ -69,13 +69,12 @@ function drawErrors(chosen, fitted, truth, { x, mark, line, range, small }) {
     const drawn = errors.map((ys) => logarithmic ? ys.map(Math.abs) : ys);
     const worst = chosen.map((table, i) =>
         `${table.name} up to ${largest(errors[i]).toExponential(1)}`);
-    const count = small ? 3 : 5;
     chart(find("errors-chart"), {
         x, mark, lines: chosen.map((table, i) => line(styleOf(table), drawn[i])),
         height: small ? 125 : 200,
         y: {
             ...scale,
-            ticks: logarithmic ? powersOfTen(...scale.range, count) : ticks(...scale.range, count),
+            ticks: logarithmic ? powersOfTen(...scale.range, 4) : ticks(...scale.range, 4),
             label: logarithmic ? "|table − exact|" : "table − exact",
         },
         label: `Errors ${range}: ${worst.join("; ") || "no table is chosen"}`,
@@ -94,7 +93,7 @@ function directionAt(x, y) {
 // One disc of exact values, and one of errors for each chosen table, with their colour bars.
 function drawDiscs() {
     const { hemisphere } = current;
-    find("above").hidden = !(hemisphere && hasExact(current));
+    find("above").hidden = find("for-maps").hidden = !(hemisphere && hasExact(current));
     if (find("above").hidden) return;
     find("above-caption").textContent = hemisphere.caption;
     const chosen = chosenTables();
