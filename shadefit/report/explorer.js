@@ -200,7 +200,9 @@ function showQuantity() {
     draw();
 }
 
+// Takes the state from the address, unless this page has just written it there.
 function restore() {
+    if (location.hash === keepAddress.last) return true;
     const wrong = readAddress(location.hash);
     if (wrong === null) return false;
     showQuantity();
@@ -246,10 +248,11 @@ function start() {
     followPointer(find("discs"), setOnDisc);
     new ResizeObserver(() => draw()).observe(find("values-chart"));
     addEventListener("hashchange", restore);
-    if (!restore()) {
-        select(current.name);
-        showQuantity();
-    }
+    if (restore()) return;
+    select(current.name);
+    showQuantity();
+    // The address stays as it is until something is changed.
+    keepAddress.last = addressOf();
 }
 
 start();

@@ -29,7 +29,8 @@ function readAddress(address) {
     }
     if (axisOf(said.get("against"))) against[current.name] = said.get("against");
     const tables = said.getAll("table");
-    if (tables.length)
+    // An empty name stands for no table.
+    if (tables.includes("") || current.tables.some(({ name }) => tables.includes(name)))
         for (const { name } of current.tables)
             shown[tables.includes(name) ? "add" : "delete"](name);
     for (const [name, allowed] of Object.entries(CHOICES))

@@ -479,15 +479,17 @@ def test_a_click_on_a_map_sets_the_direction(page):
 def test_maps_have_colour_bars_whose_scale_adapts(page):
     def ends():
         curves(page)
-        return [bar.inner_text().split() for bar in page.locator("#discs .ends").all()]
+        every = [bar.inner_text().split() for bar in page.locator("#discs .ends").all()]
+        return [[float(value.replace("−", "-")) for value in bar] for bar in every]
 
     common = ends()
     assert len(common) == 3
     assert common[1] == common[2]
-    assert common[1][0] == f"−{common[1][2]}"
+    assert common[0] == [0, 0.5, 1]
+    assert common[1][0] == -common[1][2]
     page.get_by_label("published/ps", exact=True).uncheck()
     alone = ends()
-    assert float(alone[1][2]) < float(common[1][2]) / 100
+    assert 0 < alone[1][2] < common[1][2] / 100
     page.get_by_label("published/ps", exact=True).check()
     assert ends() == common
     page.select_option("#maps", "own")
@@ -585,7 +587,7 @@ def test_charts_stay_in_sight_on_a_phone(browser, address):
         opened.locator(control).evaluate("(each) => each.scrollIntoView({ block: 'end' })")
         charts = opened.locator(".charts").bounding_box()
         own = opened.locator(control).bounding_box()
-        assert charts["y"] == pytest.approx(0, abs=1)
+        assert charts["y"] >= 0
         assert charts["height"] <= 844 / 3 + 10
         assert charts["y"] + charts["height"] <= own["y"]
         assert own["y"] + own["height"] <= 845
