@@ -118,7 +118,8 @@ def errata() -> str:
         if publication is None or entry.kind == "printed":
             continue
         lines.append(f"<h3>{escape(entry.name)}</h3>")
-        lines.append(f'<p class="faint">{escape(publication.listing)}</p>')
+        if publication.listing:
+            lines.append(f'<p class="faint">{escape(publication.listing)}</p>')
         for erratum in publication.errata:
             lines.append(
                 _list(
@@ -145,7 +146,10 @@ def provenance(more: Sequence[Entry] = ()) -> str:
     for name, table in tables.items():
         for label, text in _origin(table).items():
             if text is not None:
-                facts.setdefault(label, {}).setdefault(text, []).append(name)
+                # The same command with the names of several tables is one fact.
+                words = ["NAME" if word == name else word for word in text.split(" ")]
+                said = " ".join(words) if label == "command" else text
+                facts.setdefault(label, {}).setdefault(said, []).append(name)
     return "\n".join(_facts(label, texts) for label, texts in facts.items())
 
 
@@ -161,8 +165,10 @@ def _facts(label: str, texts: Mapping[str, list[str]]) -> str:
 
 def _origin(table: Table) -> dict[str, str | None]:
     if table.publication is not None:
-        appendix = f"appendix {table.publication.appendix}, {table.publication.listing}"
-        return {"source": table.publication.source, "printed in": appendix}
+        appendix, listing = table.publication.appendix, table.publication.listing
+        places = [f"appendix {appendix}" if appendix else "", listing]
+        printed = ", ".join(place for place in places if place)
+        return {"source": table.publication.source, "printed in": printed or None}
     found: dict[str, str | None] = {}
     recorded = table.model_dump(exclude_none=True)
     if table.grid is not None:

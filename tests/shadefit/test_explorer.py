@@ -22,9 +22,10 @@ from integrals.sampling import Sampling
 from programs import write_source
 from quantities import Problem, problem, problems, register
 from quantities.calling_convention import Argument, CallingConvention
+from quantities.loader import load_problems
 from quantities.registry import unregister
 from shadefit.figures.values import axis_hints
-from shadefit.report import code, explorer
+from shadefit.report import code, explorer, sections
 from shadefit.report import page as report
 
 # Values on the page have eight decimals, and the page's rule for R has an error.
@@ -592,6 +593,48 @@ def test_charts_stay_in_sight_on_a_phone(browser, address):
         assert charts["y"] + charts["height"] <= own["y"]
         assert own["y"] + own["height"] <= 845
     context.close()
+
+
+@pytest.fixture
+def examples():
+    """Load quantities with a closed form, with a quadrature, and of data."""
+    folder = Path(__file__).parents[2] / "examples"
+    files_of = {"soft": "soft_step.py", "fresnel": "fresnel.py", "albedo": "albedo.py"}
+    for file in files_of.values():
+        load_problems(str(folder / file))
+    yield {name: problem(name) for name in files_of}
+    for name in files_of:
+        unregister(name)
+
+
+def test_quantities_of_a_user_are_shown_as_far_as_they_are_known(
+    browser, examples, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(explorer, "problems", lambda: examples)
+    path = tmp_path / "report.html"
+    path.write_text(report.assemble(sections.summary(list(examples.values())), "", "", ""))
+    opened = browser.new_page()
+    said = []
+    opened.on("pageerror", lambda error: said.append(str(error)))
+    opened.goto(path.as_uri())
+    opened.wait_for_selector("#values-chart path")
+    names = [box.get_attribute("value") for box in opened.locator('[name="quantity"]').all()]
+    # Between the points of data nothing is known, and there is no table.
+    assert names == ["soft", "fresnel"]
+    assert "E, data of albedo.csv" in opened.inner_text("#summary")
+    assert len(curves(opened)) == 1
+    assert values(opened)["exact"][0] == f"{np.tanh(2 * 0.75):.8f}"
+    assert opened.locator("#code").is_hidden()
+    choose(opened, "fresnel")
+    assert len(curves(opened)) == 1
+    assert opened.locator("#errors-chart").is_hidden()
+    assert opened.locator("#scales").is_hidden()
+    assert "no formula for the exact values of F_avg" in opened.inner_text("#no-exact")
+    assert "FresnelAverage" in opened.inner_text("#code-text")
+    opened.mouse.click(*(opened.locator("#values-chart").bounding_box()[k] + 120 for k in "xy"))
+    assert opened.input_value("#enter-eta") != "2"
+    assert said == []
+    opened.close()
 
 
 def linear(channel):

@@ -146,7 +146,10 @@ def test_all_errata_and_all_origins_are_there(assembled):
         for erratum in known.publication.errata if known.publication else ():
             assert sections.escape(erratum.why) in assembled
         if known.provenance is not None:
-            assert f"<li>{known.provenance.command}: " in assembled
+            words = known.provenance.command.split(" ")
+            command = escape(" ".join("NAME" if word == entry.name else word for word in words))
+            (names,) = re.findall(rf"<li>{re.escape(command)}: <span[^>]*>(.*?)</span>", assembled)
+            assert entry.name in names.split(", ")
             assert f"jax {known.provenance.versions['jax']}" in assembled
 
 
@@ -187,6 +190,7 @@ def test_text_of_tables_is_escaped():
     changed = known.model_copy(update={"provenance": provenance})
     facts = {text: ["q"] for text in sections._origin(changed).values() if text}
     listed = sections._facts(hostile, facts)
+    assert sections._origin(resolve("published/q").require_table())["printed in"]
     assert "<script>" not in listed
     assert "&lt;script&gt;" in listed
     assert sections.markup("a_b < ∫_Ω") == "a<sub>b</sub> &lt; ∫<sub>Ω</sub>"
