@@ -624,7 +624,7 @@ def test_quantities_of_a_user_are_shown_as_far_as_they_are_known(
     assert "E, data of albedo.csv" in opened.inner_text("#summary")
     assert len(curves(opened)) == 1
     assert values(opened)["exact"][0] == f"{np.tanh(2 * 0.75):.8f}"
-    assert opened.locator("#code").is_hidden()
+    assert opened.input_value("#code-of") == "exact/soft"
     choose(opened, "fresnel")
     assert len(curves(opened)) == 1
     assert opened.locator("#errors-chart").is_hidden()
