@@ -52,6 +52,17 @@ def marks(owner: Problem) -> tuple[Mark, ...]:
     return (*found, *closed_form(owner))
 
 
+def mark_of(entry: Entry) -> Mark:
+    """Measure the mark of a table that is not packaged, such as one in a user's file.
+
+    If its quantity has a published table, the errors are those in the common part of both domains.
+    """
+    base = published(entry.problem)
+    every = [each for each in (base, entry) if each is not None]
+    errors = compare([(each.name, each) for each in every]).contestants[-1].errors
+    return Mark(entry.name, entry.kind, operations_of(entry), errors.largest, errors.rms)
+
+
 def closed_form(owner: Problem) -> list[Mark]:
     """Return a list with the mark of the closed form; it is empty if there is none.
 

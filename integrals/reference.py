@@ -155,7 +155,7 @@ class Reference:
     monte_carlo: Leg | None = None
     batch: int = 8192
     options_at: Callable[[np.ndarray], dict[str, Any]] = lambda _: {}
-    codomain: tuple[float, float] = (0.0, 1.0)
+    codomain: tuple[float | int, float | int] = (0.0, 1.0)
     data: Data | None = None
 
     @property

@@ -130,7 +130,12 @@ _add(
     "Examples: shadefit render --density 0.1 --tilt 45deg; "
     "shadefit render cloth --sweep --fibers even --size 160",
 )
-_add("report", report, "Example: shadefit report --out /tmp/report.html")
+_add(
+    "report",
+    report,
+    "Examples: shadefit report --out /tmp/report.html; "
+    "shadefit report -p examples/soft_step.py /tmp/tables/soft.json",
+)
 _add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
 
 

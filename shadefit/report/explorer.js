@@ -1,6 +1,8 @@
 // The page: controls, numbers, and when they are drawn anew.
 
-const WAIT = 500; // milliseconds without a change before the values are read out
+const WAIT = 500; // milliseconds without a change before values are read out and kept in the address
+
+const controls = {}; // of the current axes, by name: { show, say }
 
 // Each row has a box to draw the table, a sample of its line, its value, and its error.
 function fillTable() {
@@ -15,22 +17,28 @@ function fillTable() {
         swatch.append(element("line", { x1: 0, x2: 30, y1: 4, y2: 4, class: "line",
             style: styleOf(table) }));
         const label = document.createElement("label");
-        if (table.kind !== "exact") {
-            const box = document.createElement("input");
-            box.type = "checkbox";
-            box.checked = shown.has(table.name);
-            box.addEventListener("change", () => {
-                shown[box.checked ? "add" : "delete"](table.name);
-                draw();
-            });
-            label.append(box);
-        }
+        if (table.kind !== "exact") label.append(boxOf(table));
         label.append(swatch, ` ${table.name}`);
         head.append(label);
         row.append(head, document.createElement("td"), document.createElement("td"));
         return row;
     });
     find("values").replaceChildren(...rows);
+}
+
+function boxOf(table) {
+    const box = document.createElement("input");
+    box.type = "checkbox";
+    box.checked = shown.has(table.name);
+    box.addEventListener("change", () => {
+        shown[box.checked ? "add" : "delete"](table.name);
+        if (box.checked && codeOf(table.name)) {
+            choices.code = table.name;
+            showCode();
+        }
+        draw();
+    });
+    return box;
 }
 
 function updateValues() {
@@ -55,44 +63,80 @@ function updateValues() {
         ].join("; ");
     }
     clearTimeout(updateValues.timer);
-    updateValues.timer = setTimeout(() => { find("status").textContent = said.join("; "); }, WAIT);
+    updateValues.timer = setTimeout(() => {
+        find("status").textContent = said.join("; ");
+        keepAddress();
+    }, WAIT);
 }
 
-// A control for an axis: a slider and a number field, both in the shown unit.
+function keepAddress() {
+    const address = addressOf();
+    if (address === keepAddress.last) return;
+    keepAddress.last = address;
+    try {
+        history.replaceState(null, "", address);
+    } catch {
+        // A browser may not allow this for a file.
+        location.replace(address);
+    }
+}
+
+// A control for an axis: a slider and a number field, both in the shown unit, and what is wrong with
+// the number. A slider over a logarithmic axis is one of the logarithm.
 function control(axis) {
-    const { name, low, high, factor, unit } = axis;
+    const { name, low, high, factor, unit, logarithmic } = axis;
+    const [toSlider, fromSlider] = logarithmic ? [Math.log10, (place) => 10 ** place]
+        : [(value) => value, (place) => place];
     const group = document.createElement("div");
     group.className = "control";
     const label = document.createElement("label");
     label.htmlFor = `slide-${name}`;
-    label.textContent = `${axis.symbol}, ${axis.meaning}`;
+    label.textContent = axis.meaning ? `${axis.symbol}, ${axis.meaning}` : axis.symbol;
     const [range, number] = ["range", "number"].map((type) => {
         const input = document.createElement("input");
         input.type = type;
-        input.min = low * factor;
-        input.max = high * factor;
-        input.step = "any";
         return input;
     });
     range.id = `slide-${name}`;
-    range.step = unit === "°" ? 0.5 : stepOf((high - low) * factor);
+    const ends = [toSlider(low * factor), toSlider(high * factor)];
+    [range.min, range.max] = ends;
+    range.step = unit === "°" ? 0.5 : stepOf(ends[1] - ends[0]);
     number.id = `enter-${name}`;
+    number.step = "any";
     number.setAttribute("aria-label", `${axis.symbol} as a number`);
-    const set = (text, source) => {
-        const entered = Number.parseFloat(text);
-        const fits = entered >= Number(number.min) - 1e-9 && entered <= Number(number.max) + 1e-9;
-        number.setAttribute("aria-invalid", String(!fits));
-        if (!fits) return;
-        state[name] = Math.min(Math.max(entered / factor, low), high);
-        if (source !== range) range.value = entered;
-        if (source !== number) number.value = String(Number(entered.toPrecision(6)));
-        range.setAttribute("aria-valuetext", `${number.value}${unit}`);
-        draw();
+    number.setAttribute("aria-describedby", `message-${name}`);
+    const message = document.createElement("p");
+    message.id = `message-${name}`;
+    message.className = "message";
+    message.setAttribute("role", "alert");
+    const say = (text) => {
+        message.textContent = text;
+        number.setAttribute("aria-invalid", String(text !== ""));
     };
-    range.addEventListener("input", () => set(range.value, range));
-    number.addEventListener("input", () => set(number.value, number));
-    group.append(label, range, number, unit);
-    set(String(state[name] * factor), null);
+    // Shows the value of the state in all inputs but the one that is being used.
+    const show = (source = null) => {
+        if (source !== range) range.value = toSlider(state[name] * factor);
+        if (source !== number) number.value = shownText(axis);
+        range.setAttribute("aria-valuetext", `${shownText(axis)}${unit}`);
+        say("");
+    };
+    range.addEventListener("input", () => {
+        const entered = Number(fromSlider(Number(range.value)).toPrecision(logarithmic ? 3 : 12));
+        state[name] = Math.min(Math.max(entered / factor, low), high);
+        show(range);
+        draw();
+    });
+    number.addEventListener("input", () => {
+        const wrong = enterText(axis, number.value);
+        if (wrong) say(wrong);
+        else {
+            show(number);
+            draw();
+        }
+    });
+    group.append(label, range, number, unit, message);
+    show();
+    controls[name] = { show, say };
     return group;
 }
 
@@ -101,16 +145,69 @@ function stepOf(width) {
     return 10 ** Math.round(Math.log10(width / 1000));
 }
 
-function choose(name) {
-    select(name);
-    find("controls").replaceChildren(...current.axes.map(control));
-    const choice = find("against");
-    choice.replaceChildren(...current.axes.map((axis) => {
-        const selected = axis.name === against[name];
-        return new Option(`${axis.symbol}, ${axis.meaning}`, axis.name, selected, selected);
-    }));
-    fillTable();
+// Sets a place of the upper or lower chart, or of a disc, while the pointer is down.
+function followPointer(container, set) {
+    container.addEventListener("pointerdown", (event) => {
+        if (event.button !== 0) return;
+        if (event.pointerType === "mouse") event.preventDefault();
+        container.setPointerCapture(event.pointerId);
+        if (set(event)) showPlace();
+    });
+    container.addEventListener("pointermove", (event) => {
+        if (container.hasPointerCapture(event.pointerId) && set(event)) showPlace();
+    });
+}
+
+function showPlace() {
+    for (const { name } of current.axes) controls[name].show();
     draw();
+}
+
+function setOnChart(container, event) {
+    moveAlong(against[current.name], container.toPlace(event.clientX));
+    return true;
+}
+
+function setOnDisc(event) {
+    // While the pointer is down, its events are those of the container.
+    if (event.type === "pointerdown") setOnDisc.canvas = event.target.closest("canvas");
+    const { canvas } = setOnDisc;
+    if (!canvas) return false;
+    const { left, top, width } = canvas.getBoundingClientRect();
+    const [x, y] = [event.clientX - left, event.clientY - top].map((d) => (2 * d) / width - 1);
+    for (const [name, value] of Object.entries(directionAt(x, -y))) {
+        const { low, high } = axisOf(name);
+        state[name] = Math.min(Math.max(value, low), high);
+    }
+    return true;
+}
+
+// Makes the controls of the current quantity.
+function showQuantity() {
+    for (const input of document.querySelectorAll('input[name="quantity"]'))
+        input.checked = input.value === current.name;
+    find("about").textContent = current.about;
+    find("controls").replaceChildren(...current.axes.map(control));
+    find("against").replaceChildren(...current.axes.map(({ name, symbol, meaning }) =>
+        new Option(meaning ? `${symbol}, ${meaning}` : symbol, name, false,
+            name === against[current.name])));
+    find("no-exact").textContent = `The page has no formula for the exact values of `
+        + `${current.symbol}. The summary has the errors of the tables.`;
+    find("errors").value = choices.errors;
+    find("maps").value = choices.maps;
+    fillTable();
+    fillCodes();
+    draw();
+}
+
+// Takes the state from the address, unless this page has just written it there.
+function restore() {
+    if (location.hash === keepAddress.last) return true;
+    const wrong = readAddress(location.hash);
+    if (wrong === null) return false;
+    showQuantity();
+    for (const [name, message] of Object.entries(wrong)) controls[name].say(message);
+    return true;
 }
 
 // Numbers change at once; pictures at most once a frame, even if a slider moves faster.
@@ -123,11 +220,39 @@ function draw() {
     });
 }
 
-for (const input of document.querySelectorAll('input[name="quantity"]'))
-    input.addEventListener("change", () => choose(input.value));
-find("against").addEventListener("change", (event) => {
-    against[current.name] = event.target.value;
-    draw();
-});
-new ResizeObserver(() => draw()).observe(find("values-chart"));
-choose(document.querySelector('input[name="quantity"]:checked').value);
+function start() {
+    for (const input of document.querySelectorAll('input[name="quantity"]'))
+        input.addEventListener("change", () => {
+            select(input.value);
+            showQuantity();
+        });
+    find("against").addEventListener("change", (event) => {
+        against[current.name] = event.target.value;
+        draw();
+    });
+    for (const name of ["errors", "maps"])
+        find(name).addEventListener("change", (event) => {
+            choices[name] = event.target.value;
+            draw();
+        });
+    for (const [id, name] of [["code-of", "code"], ["code-in", "language"]])
+        find(id).addEventListener("change", (event) => {
+            choices[name] = event.target.value;
+            showCode();
+            keepAddress();
+        });
+    find("code-in").replaceChildren(...known.languages.map(({ key, name }) => new Option(name, key)));
+    find("copy").addEventListener("click", copyCode);
+    for (const id of ["values-chart", "errors-chart"])
+        followPointer(find(id), (event) => setOnChart(find(id), event));
+    followPointer(find("discs"), setOnDisc);
+    new ResizeObserver(() => draw()).observe(find("values-chart"));
+    addEventListener("hashchange", restore);
+    if (restore()) return;
+    select(current.name);
+    showQuantity();
+    // The address stays as it is until something is changed.
+    keepAddress.last = addressOf();
+}
+
+start();

@@ -5,6 +5,9 @@ A table is evaluated by its exported functions, with the clamps, as in a rendere
 """
 
 import json
+import math
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 
@@ -12,19 +15,25 @@ import numpy as np
 from matplotlib import colormaps
 
 from coefficients.catalogue import Entry, entries
-from programs import Function, Parameter, function, write_source
+from programs import Function, Parameter, function, language, write_source
 from quantities import Problem, problems
 from quantities.problem import AverageHint, HemisphereHint
 from shadefit.figures.style import ERRORS, VALUES
 from shadefit.figures.values import axis_hints, hints_of
+from shadefit.report.code import LISTED, codes
 
-SCRIPTS = ("explorer_model.js", "explorer_draw.js", "explorer_pictures.js", "explorer.js")
+# The first ones need no page.
+MODEL = ("explorer_model.js", "explorer_scales.js", "explorer_address.js")
+SCRIPTS = (
+    *MODEL,
+    *("explorer_draw.js", "explorer_pictures.js", "explorer_code.js", "explorer.js"),
+)
 _COLOURS = 33
 # JSON has no infinity: an end of a domain beyond this is no end.
 _LARGEST = 1e9
 _SUBSCRIPTS = dict(zip("aehijklmnoprstuvx0123456789", "ₐₑₕᵢⱼₖₗₘₙₒₚᵣₛₜᵤᵥₓ₀₁₂₃₄₅₆₇₈₉", strict=True))
-# The kinds of tables that are drawn before the reader chooses others.
-_SHOWN = ("published", "refitted")
+# So many of the best tables of a quantity are drawn before the reader chooses others.
+_BEST_SHOWN = 3
 
 
 @dataclass
@@ -38,27 +47,38 @@ class _Printed:
         self.functions |= {each.name: each for each in given}
         return given[-1].name
 
+    def unused(self, name: str) -> str:
+        """Return a name that no function has: this one, or it with a number at its end."""
+        tried = (name, *(f"{name}_{count}" for count in range(2, len(self.functions) + 3)))
+        return next(each for each in tried if each not in self.functions)
 
-def explored() -> list[Problem]:
-    """List the quantities that the page can evaluate: by a closed form, a rule, or tables."""
+
+def explored(more: Sequence[Entry] = ()) -> list[Problem]:
+    """List the quantities that the page can evaluate: by a closed form, a rule, or tables.
+
+    `more` are tables that are not packaged. A user's own quantities come first.
+    """
     return [
         owner
-        for owner in problems().values()
-        if owner.closed_form or hints_of(owner).average or entries(owner)
+        for owner in sorted(problems().values(), key=lambda owner: owner.topic != "")
+        if owner.closed_form or hints_of(owner).average or _tables(owner, more)
     ]
 
 
-def script() -> str:
+def script(more: Sequence[Entry] = ()) -> str:
     """Return the page's whole script: printed functions, the data about them, and the explorer."""
-    functions, known = functions_and_data(explored())
+    owners = explored(more)
+    functions, known = functions_and_data(owners, more)
+    texts = {owner.name: codes(owner, _tables(owner, more)) for owner in owners}
     given = [
         f"const exported = {{ {', '.join(functions)} }};",
         f"const known = {json.dumps(known, ensure_ascii=False, allow_nan=False)};",
+        f"const codes = {json.dumps(texts, ensure_ascii=False)};",
     ]
     own = [files("shadefit.report").joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS]
     parts = ['"use strict";', "(() => {", printed(functions), *given, *own, "})();"]
-    # HTML ends a script at the first "</script", even within a string.
-    return "\n".join(parts).replace("</", "<\\/")
+    # HTML ends a script at the first "</script", even within a string, and "<!--" hides that end.
+    return re.sub(r"<(?=/|!--)", r"<\\", "\n".join(parts))
 
 
 def printed(functions: dict[str, Function]) -> str:
@@ -66,28 +86,40 @@ def printed(functions: dict[str, Function]) -> str:
     return write_source(list(functions.values()), "javascript", "double")
 
 
-def functions_and_data(owners: list[Problem]) -> tuple[dict[str, Function], dict]:
+def functions_and_data(
+    owners: Sequence[Problem], more: Sequence[Entry] = ()
+) -> tuple[dict[str, Function], dict]:
     """Return the functions that the page calls, by name, and what it knows about quantities."""
     page = _Printed()
     known = {
-        "quantities": [_quantity(page, owner) for owner in owners],
+        "quantities": [_quantity(page, owner, _tables(owner, more)) for owner in owners],
+        "languages": [{"key": key, "name": language(key).name} for key in LISTED],
         "colours": {"values": _ramp(VALUES), "errors": _ramp(ERRORS)},
     }
     return page.functions, known
 
 
 def identifier(entry: Entry) -> str:
-    """Return a table's name in JavaScript: 'published/ps@printed' becomes publishedPsPrinted."""
+    """Return a table's name in JavaScript: 'published/ps@printed' becomes publishedPsPrinted.
+
+    Two tables in files may have names that differ only in what is left out here.
+    """
     first = "published" if entry.kind == "printed" else entry.kind
     return first + _camel_case(entry.name.rpartition("/")[2])
 
 
-def _quantity(page: _Printed, owner: Problem) -> dict:
+def _tables(owner: Problem, more: Sequence[Entry]) -> list[Entry]:
+    return [*entries(owner), *(entry for entry in more if entry.problem is owner)]
+
+
+def _quantity(page: _Printed, owner: Problem, own: list[Entry]) -> dict:
     """Return the data of a quantity, and add the functions that it is evaluated by."""
     hints = hints_of(owner)
+    drawn = drawn_at_first(own)
     return {
         "name": owner.name,
         "symbol": _with_subscript(owner.symbol),
+        "about": owner.reference.meaning,
         "axes": [
             {
                 "name": axis.name,
@@ -98,17 +130,35 @@ def _quantity(page: _Printed, owner: Problem) -> dict:
                 "start": hint.start,
                 "factor": hint.factor,
                 "unit": hint.unit,
+                "logarithmic": hint.logarithmic and hint.slider[0] > 0,
             }
             for axis, hint in axis_hints(owner)
         ],
         "against": hints.against or owner.axes[-1].name,
-        "values": list(hints.values or ()),
-        "largestError": hints.largest_error,
         "exact": page.add(_exact(owner)) if owner.closed_form else None,
         "average": _average(page, hints.average),
         "hemisphere": _hemisphere(hints.hemisphere),
-        "tables": [_table(page, entry) for entry in entries(owner)],
+        "tables": [_table(page, entry) | {"shown": entry in drawn} for entry in own],
+        "code": min(drawn, key=_stated).name if drawn else None,
     }
+
+
+def drawn_at_first(own: list[Entry]) -> list[Entry]:
+    """Return the tables that are drawn before the reader chooses others.
+
+    They are the published table, those in files, and of the best tables those with the smallest, a
+    middle, and the largest error. Without best tables the refitted one is drawn too.
+    """
+    best = sorted((entry for entry in own if entry.kind == "best"), key=_stated)
+    kinds = ("published", "file") if best else ("published", "refitted", "file")
+    places = np.linspace(0, len(best) - 1, min(_BEST_SHOWN, len(best))).round().astype(int)
+    chosen = [best[place] for place in places]
+    return [entry for entry in own if entry.kind in kinds or entry in chosen]
+
+
+def _stated(entry: Entry) -> tuple[float, str]:
+    errors = entry.require_table().errors
+    return (math.inf if errors is None else errors.off_grid.max, entry.name)
 
 
 def _table(page: _Printed, entry: Entry) -> dict:
@@ -117,7 +167,7 @@ def _table(page: _Printed, entry: Entry) -> dict:
     The first function is called with the values of the axes whose places are `order`. A second one
     is called with the results of the first and with those of the function `inputs`.
     """
-    name, form = identifier(entry), entry.require_fitted().form
+    name, form = page.unused(identifier(entry)), entry.require_fitted().form
     exported = entry.functions("double", name)
     page.add(*exported)
     axes = [axis.name for axis in form.axes]
@@ -131,7 +181,6 @@ def _table(page: _Printed, entry: Entry) -> dict:
             [max(float(axis.lower), -_LARGEST), min(float(axis.upper), _LARGEST)]
             for axis in form.axes
         ],
-        "shown": entry.kind in _SHOWN,
     }
 
 

@@ -1,94 +1,123 @@
 // The pictures of the current quantity: curves of values and errors, and discs of a hemisphere.
 
-const BEST = ["--best-0", "--best-1", "--best-2", "--best-3"];
-const DASHES = {
+const KIND_DASHES = {
     exact: "none", published: "7 4", printed: "7 3 2 3", refitted: "2.5 3",
 };
-// There may be many best tables: every colour is combined with every dash.
-const BEST_DASHES = ["11 3 3 3", "9 3 2 3 2 3", "14 4", "4 4 1 4"];
-
-// The names of the tables that are drawn.
-const shown = new Set(known.quantities.flatMap((quantity) =>
-    quantity.tables.filter((table) => table.shown).map((table) => table.name)));
+// The other tables have colours of their own. The style sheet has this many; further ones are spread
+// by the golden angle, so that none is repeated.
+const COLOURS = 10;
+const GOLDEN_ANGLE = 137.508;
+const DASHES = ["11 3 3 3", "9 3 2 3 2 3", "14 4", "4 4 1 4"];
 
 const find = (id) => document.getElementById(id);
 
-function chosenTables() {
-    return current.tables.filter((table) => shown.has(table.name));
+function styleOf({ kind, name }) {
+    if (kind in KIND_DASHES) return `stroke: var(--${kind}); stroke-dasharray: ${KIND_DASHES[kind]}`;
+    const index = current.tables.filter((each) => !(each.kind in KIND_DASHES))
+        .findIndex((each) => each.name === name);
+    const colour = index < COLOURS ? `var(--best-${index})`
+        : `hsl(${((index * GOLDEN_ANGLE) % 360).toFixed(1)} 60% 50%)`;
+    return `stroke: ${colour}; stroke-dasharray: ${DASHES[index % DASHES.length]}`;
 }
 
-function styleOf({ kind, name }) {
-    if (kind !== "best") return `stroke: var(--${kind}); stroke-dasharray: ${DASHES[kind]}`;
-    const index = current.tables.filter((each) => each.kind === "best")
-        .findIndex((each) => each.name === name);
-    const dash = BEST_DASHES[Math.floor(index / BEST.length) % BEST_DASHES.length];
-    return `stroke: var(${BEST[index % BEST.length]}); stroke-dasharray: ${dash}`;
+function horizontal(axis, values) {
+    const { symbol, factor, unit, logarithmic } = axis;
+    const range = [values[0] * factor, values.at(-1) * factor];
+    const few = find("values-chart").clientWidth < 480;
+    const sixths = [0, 1, 2, 3, 4, 5, 6].filter((i) => !few || i % 2 === 0);
+    const round = unit === "°" ? sixths.map((i) => range[0] + ((range[1] - range[0]) * i) / 6)
+        : logarithmic ? powersOfTen(...range, 6) : ticks(...range, 5);
+    return { range, logarithmic, ticks: round, label: symbol + (unit ? ` / ${unit}` : "") };
 }
 
 function drawCharts() {
     const axis = axisOf(against[current.name]);
-    const { name, symbol, factor, unit } = axis;
-    const angle = unit === "°";
+    const { name, symbol, factor } = axis;
     const values = places(name);
     const points = values.map((value) => pointAlong(name, value));
     const chosen = chosenTables();
     const fitted = chosen.map((table) => points.map((point) => evaluate(table, point)));
-    const line = (style, ys) => ({ style, points: values.map((x, i) => [x * factor, ys[i]]) });
-    const xRange = [values[0] * factor, values.at(-1) * factor];
-    const xTicks = !angle ? ticks(...xRange, 5)
-        : [0, 1, 2, 3, 4, 5, 6].map((i) => xRange[0] + ((xRange[1] - xRange[0]) * i) / 6);
-    const few = find("values-chart").clientWidth < 480;
-    const common = {
-        xRange,
-        xTicks: xTicks.filter((_, i) => !angle || !few || i % 2 === 0),
-        xLabel: symbol + (unit ? ` / ${unit}` : ""),
-        mark: state[name] * factor,
-    };
-    const range = `against ${symbol} from ${short(xRange[0])} to ${short(xRange[1])}`;
     const truth = points.map(exactAt);
+    const line = (style, ys) => ({ style, points: values.map((x, i) => [x * factor, ys[i]]) });
+    const x = horizontal(axis, values);
+    const common = { x, mark: placeAlong(name) * factor };
+    const small = window.matchMedia("(max-width: 60rem)").matches;
+    const range = `against ${symbol} from ${short(x.range[0])} to ${short(x.range[1])}`;
+
     const lines = chosen.map((table, i) => line(styleOf(table), fitted[i]));
     if (hasExact(current)) lines.unshift(line(styleOf({ kind: "exact" }), truth));
     const extremes = [Math.min(...truth), Math.max(...truth)].map((value) => value.toFixed(3));
     const said = hasExact(current) ? `exact values from ${extremes.join(" to ")}`
         : chosen.map((table) => table.name).join("; ") || "no table is chosen";
-    chart(find("values-chart"), {
-        ...common, lines, bounds: current.values, height: 280, yLabel: current.symbol,
+    const shownRange = rangeOfCurves(truth, fitted);
+    const toPlace = chart(find("values-chart"), {
+        ...common, lines, height: small ? 150 : 280,
+        y: { range: shownRange, ticks: ticks(...shownRange, 5), label: current.symbol },
         label: `${current.symbol} ${range}: ${said}`,
     });
-    find("errors-chart").hidden = !hasExact(current);
-    if (!hasExact(current)) return;
+    find("values-chart").toPlace = (clientX) => toPlace(clientX) / factor;
+    find("errors-chart").toPlace = find("values-chart").toPlace;
+    find("errors-chart").hidden = find("scales").hidden = !hasExact(current);
+    find("no-exact").hidden = hasExact(current);
+    if (hasExact(current)) drawErrors(chosen, fitted, truth, { ...common, line, range, small });
+}
+
+function drawErrors(chosen, fitted, truth, { x, mark, line, range, small }) {
     const errors = fitted.map((ys) => ys.map((value, i) => value - truth[i]));
-    const worst = chosen.map((table, i) => {
-        const largest = Math.max(0, ...errors[i].filter(Number.isFinite).map(Math.abs));
-        return `${table.name} up to ${largest.toExponential(1)}`;
-    });
+    const scale = rangeOfErrors(errors, choices.errors);
+    const { logarithmic } = scale;
+    const drawn = errors.map((ys) => logarithmic ? ys.map(Math.abs) : ys);
+    const worst = chosen.map((table, i) =>
+        `${table.name} up to ${largest(errors[i]).toExponential(1)}`);
     chart(find("errors-chart"), {
-        ...common, lines: chosen.map((table, i) => line(styleOf(table), errors[i])),
-        bounds: [0], height: 190, yLabel: "table − exact",
+        x, mark, lines: chosen.map((table, i) => line(styleOf(table), drawn[i])),
+        height: small ? 125 : 200,
+        y: {
+            ...scale,
+            ticks: logarithmic ? powersOfTen(...scale.range, 4) : ticks(...scale.range, 4),
+            label: logarithmic ? "|table − exact|" : "table − exact",
+        },
         label: `Errors ${range}: ${worst.join("; ") || "no table is chosen"}`,
     });
 }
 
-// One disc of exact values, and one of errors for each chosen table.
+// The direction at a place of the unit disc, as values of axes by name.
+function directionAt(x, y) {
+    const { polar, azimuth } = current.hemisphere;
+    return {
+        [polar]: Math.asin(Math.min(Math.hypot(x, y), 1)),
+        [azimuth]: Math.atan2(y, x),
+    };
+}
+
+// One disc of exact values, and one of errors for each chosen table, with their colour bars.
 function drawDiscs() {
-    const { hemisphere, largestError } = current;
-    find("above").hidden = !(hemisphere && hasExact(current));
+    const { hemisphere } = current;
+    find("above").hidden = find("for-maps").hidden = !(hemisphere && hasExact(current));
     if (find("above").hidden) return;
     find("above-caption").textContent = hemisphere.caption;
     const chosen = chosenTables();
-    const canvases = discCanvases(chosen);
-    const point = (x, y) => at({
-        [hemisphere.polar]: Math.asin(Math.min(Math.sqrt(x * x + y * y), 1)),
-        [hemisphere.azimuth]: Math.atan2(y, x),
-    });
+    const figures = discFigures(chosen);
+    const canvases = figures.map((figure) => figure.querySelector("canvas"));
     const truth = [];
-    disc(canvases[0], known.colours.values, (x, y, pixel) => {
-        truth[pixel] = exactAt(point(x, y));
-        return truth[pixel];
+    const errors = chosen.map(() => []);
+    forPixels(canvases[0].width, (x, y, pixel) => {
+        const point = at(directionAt(x, y));
+        truth[pixel] = exactAt(point);
+        chosen.forEach((table, i) => {
+            errors[i][pixel] = evaluate(table, point) - truth[pixel];
+        });
     });
+    const [low, high] = roundRange(truth, 4);
+    disc(canvases[0], known.colours.values, (x, y, pixel) => (truth[pixel] - low) / (high - low));
+    describe(figures[0], "exact", known.colours.values, [low, high]);
+    const worst = errors.map(largest);
     chosen.forEach((table, i) => {
+        const limit = roundUp(Math.max(choices.maps === "own" ? worst[i] : Math.max(...worst), 1e-15));
         disc(canvases[i + 1], known.colours.errors, (x, y, pixel) =>
-            0.5 + (evaluate(table, point(x, y)) - truth[pixel]) / (2 * largestError));
+            0.5 + errors[i][pixel] / (2 * limit));
+        const title = `${table.name} − exact, up to ${worst[i].toExponential(1)}`;
+        describe(figures[i + 1], title, known.colours.errors, [-limit, limit]);
     });
     const distance = Math.sin(state[hemisphere.polar]);
     const azimuth = state[hemisphere.azimuth];
@@ -96,24 +125,29 @@ function drawDiscs() {
         ring(canvas, distance * Math.cos(azimuth), distance * Math.sin(azimuth));
 }
 
-// Returns the canvases, which are made anew when the chosen tables change.
-function discCanvases(chosen) {
+function describe(figure, title, ramp, range) {
+    figure.querySelector("figcaption").textContent = title;
+    figure.querySelector(".bar").replaceWith(colourBar(ramp, range, title));
+}
+
+// Returns the figures, which are made anew when the chosen tables change.
+function discFigures(chosen) {
     const holder = find("discs");
     const names = ["exact", ...chosen.map((table) => table.name)];
-    if (holder.dataset.shown !== names.join()) {
-        holder.dataset.shown = names.join();
+    const key = JSON.stringify([current.name, names]);
+    if (holder.dataset.shown !== key) {
+        holder.dataset.shown = key;
         holder.replaceChildren(...names.map((name) => {
             const figure = document.createElement("figure");
             const canvas = document.createElement("canvas");
             canvas.width = canvas.height = 120;
             canvas.setAttribute("role", "img");
-            const caption = document.createElement("figcaption");
-            caption.textContent = name === "exact" ? "exact, 0 to 1"
-                : `${name} − exact, ±${current.largestError}`;
             canvas.setAttribute("aria-label", `${current.symbol} over the hemisphere: ${name}`);
-            figure.append(canvas, caption);
+            const bar = document.createElement("div");
+            bar.className = "bar";
+            figure.append(canvas, bar, document.createElement("figcaption"));
             return figure;
         }));
     }
-    return holder.querySelectorAll("canvas");
+    return [...holder.children];
 }

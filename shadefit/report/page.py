@@ -2,10 +2,11 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 
+from coefficients.catalogue import Entry
 from quantities import problems
 from shadefit.figures import Picture, pictures
 from shadefit.report import sections
@@ -13,27 +14,33 @@ from shadefit.report.explorer import explored, script
 from shadefit.report.sections import markup
 
 
-def page(drawn: Mapping[str, bytes]) -> str:
-    """Return the report with the PNG files of pictures, by the names of the pictures."""
+def page(drawn: Mapping[str, bytes], more: Sequence[Entry] = ()) -> str:
+    """Return the report with the PNG files of pictures, by the names of the pictures.
+
+    It is about the packaged tables, and those in `more`.
+    """
     known = pictures()
     return assemble(
-        sections.summary(list(problems().values())),
+        sections.summary(list(problems().values()), more),
         "\n".join(figure(name, known[name], png) for name, png in drawn.items()),
         sections.errata(),
-        sections.provenance(),
+        sections.provenance(more),
+        more,
     )
 
 
-def assemble(summary: str, figures: str, errata: str, provenance: str) -> str:
+def assemble(
+    summary: str, figures: str, errata: str, provenance: str, more: Sequence[Entry] = ()
+) -> str:
     """Return the page with the explorer and these sections, each in HTML."""
     parts = {
         "style": _packaged("report.css"),
-        "quantities": _choices(),
+        "quantities": _choices(more),
         "summary": summary,
         "figures": figures,
         "errata": errata,
         "provenance": provenance,
-        "script": script(),
+        "script": script(more),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: parts[slot[1]], _packaged("report.html"))
 
@@ -53,10 +60,10 @@ def _packaged(name: str) -> str:
     return files("shadefit.report").joinpath(name).read_text(encoding="utf-8").rstrip()
 
 
-def _choices() -> str:
+def _choices(more: Sequence[Entry]) -> str:
     """Return a radio button for each quantity of the explorer."""
     lines = []
-    for index, owner in enumerate(explored()):
+    for index, owner in enumerate(explored(more)):
         chosen = " checked" if index == 0 else ""
         lines.append(
             f'<label><input type="radio" name="quantity" value="{escape(owner.name)}"{chosen}> '

@@ -1,13 +1,13 @@
 """The report's tables in HTML: the cost and errors of each table, its errata, and its origin."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 
 from coefficients.catalogue import EXACT, Entry, entries, published, resolve
 from coefficients.exported_code import programs_of
-from coefficients.frontier import Mark, marks
-from coefficients.proof_text import proof_text
+from coefficients.frontier import Mark, mark_of, marks
+from coefficients.proof_text import proofs
 from coefficients.table import Table
 from programs import count_operations
 from quantities import Problem
@@ -28,12 +28,15 @@ _NORMS = {"l2": "rms", "linf": "largest"}
 _TEXT = ' class="text"'
 
 
-def summary(chosen: Sequence[Problem]) -> str:
-    """Return the table of all tables of some quantities: form, operations, errors and proofs."""
+def summary(chosen: Sequence[Problem], more: Sequence[Entry] = ()) -> str:
+    """Return the table of all tables of some quantities: form, operations, errors and proofs.
+
+    `more` are tables that are not packaged.
+    """
     head = "".join(
         f'<th scope="col"{_TEXT if column == "form" else ""}>{column}</th>' for column in _COLUMNS
     )
-    rows = [row for owner in chosen for row in _group(owner)]
+    rows = [row for owner in chosen for row in _group(owner, more)]
     return (
         '<div class="scroll" tabindex="0" role="group" aria-label="All tables">\n'
         f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n" + "\n".join(rows) + "\n</tbody>\n"
@@ -48,21 +51,38 @@ def summary(chosen: Sequence[Problem]) -> str:
     )
 
 
-def _group(owner: Problem) -> list[str]:
+def _group(owner: Problem, more: Sequence[Entry]) -> list[str]:
     """Return the rows of a quantity: its definition, its tables, and its closed form."""
-    reference = owner.reference
     span = len(_COLUMNS)
-    title = f"{reference.symbol} = {reference.definition}, {reference.meaning}"
-    order = list(KINDS)
-    every = sorted(marks(owner), key=lambda mark: (order.index(mark.kind), mark.operations))
+    order = [*KINDS, "file"]
+    own = {entry.name: entry for entry in more if entry.problem is owner}
+    every = [*marks(owner), *(mark_of(entry) for entry in own.values())]
+    every.sort(key=lambda mark: (order.index(mark.kind), mark.operations))
     base = published(owner)
     first = next((mark for mark in every if base and mark.name == base.name), None)
-    head = f'<tr class="group"><th colspan="{span}" scope="colgroup">{markup(title)}</th></tr>'
-    return [head, *(_row(mark, first, owner) for mark in every)]
+    head = (
+        f'<tr class="group"><th colspan="{span}" scope="colgroup">{markup(_title(owner))}</th></tr>'
+    )
+    if not every:
+        return [head, f'<tr><td colspan="{span}"{_TEXT}>There is no table.</td></tr>']
+    return [head, *(_row(mark, first, _entry(mark, owner, own)) for mark in every)]
 
 
-def _row(mark: Mark, base: Mark | None, owner: Problem) -> str:
-    entry = resolve(f"{EXACT}/{owner.name}" if mark.kind == "exact" else mark.name)
+def _title(owner: Problem) -> str:
+    """Return a text that says what a quantity is: 'Q = (1/π) ∫_Ω …, average chance …'."""
+    reference = owner.reference
+    defined = f"{owner.symbol} = {reference.definition}" if reference.definition else owner.symbol
+    of_data = f"data of {reference.data.source}" if reference.data is not None else ""
+    return ", ".join(part for part in (defined, reference.meaning, of_data) if part)
+
+
+def _entry(mark: Mark, owner: Problem, own: Mapping[str, Entry]) -> Entry:
+    if mark.kind == "exact":
+        return resolve(f"{EXACT}/{owner.name}")
+    return own.get(mark.name) or resolve(mark.name)
+
+
+def _row(mark: Mark, base: Mark | None, entry: Entry) -> str:
     table = entry.table
     cells = [
         table.equation if table else "closed form",
@@ -72,7 +92,7 @@ def _row(mark: Mark, base: Mark | None, owner: Problem) -> str:
         f"{mark.rms / base.rms:.3g}" if base else "—",
         f"{mark.largest:.3e}",
         f"{mark.largest / base.largest:.3g}" if base else "—",
-        _proofs(table),
+        _proofs(entry),
     ]
     first = f"<td{_TEXT}>{markup(cells[0])}</td>"
     rest = "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:])
@@ -86,8 +106,8 @@ def _operations(entry: Entry) -> str:
     )
 
 
-def _proofs(table: Table | None) -> str:
-    return "—" if table is None else "; ".join(proof_text(table.certificates)) or "—"
+def _proofs(entry: Entry) -> str:
+    return "—" if entry.table is None else "; ".join(proofs(entry)) or "—"
 
 
 def errata() -> str:
@@ -98,7 +118,8 @@ def errata() -> str:
         if publication is None or entry.kind == "printed":
             continue
         lines.append(f"<h3>{escape(entry.name)}</h3>")
-        lines.append(f'<p class="faint">{escape(publication.listing)}</p>')
+        if publication.listing:
+            lines.append(f'<p class="faint">{escape(publication.listing)}</p>')
         for erratum in publication.errata:
             lines.append(
                 _list(
@@ -115,19 +136,39 @@ def errata() -> str:
     return "\n".join(lines)
 
 
-def provenance() -> str:
-    """Return the origin of every table: source or command, grid, exact values, versions."""
-    return "\n".join(
-        f"<h3>{escape(entry.name)}</h3>\n{_list(_origin(entry.require_table()))}"
-        for entry in entries()
-        if entry.kind != "printed"
+def provenance(more: Sequence[Entry] = ()) -> str:
+    """Return the origin of every table: source or command, grid, exact values, versions.
+
+    What several tables have in common is said once, with their names.
+    """
+    tables = {e.name: e.require_table() for e in (*entries(), *more) if e.kind != "printed"}
+    facts: dict[str, dict[str, list[str]]] = {}
+    for name, table in tables.items():
+        for label, text in _origin(table).items():
+            if text is not None:
+                # The same command with the names of several tables is one fact.
+                words = ["NAME" if word == name else word for word in text.split(" ")]
+                said = " ".join(words) if label == "command" else text
+                facts.setdefault(label, {}).setdefault(said, []).append(name)
+    return "\n".join(_facts(label, texts) for label, texts in facts.items())
+
+
+def _facts(label: str, texts: Mapping[str, list[str]]) -> str:
+    lines = [
+        f'<li>{escape(text)}: <span class="faint">{escape(", ".join(names))}</span></li>'
+        for text, names in texts.items()
+    ]
+    return (
+        f"<h3>{escape(label[:1].upper() + label[1:])}</h3>\n<ul>\n" + "\n".join(lines) + "\n</ul>"
     )
 
 
 def _origin(table: Table) -> dict[str, str | None]:
     if table.publication is not None:
-        appendix = f"appendix {table.publication.appendix}, {table.publication.listing}"
-        return {"source": table.publication.source, "printed in": appendix}
+        appendix, listing = table.publication.appendix, table.publication.listing
+        places = [f"appendix {appendix}" if appendix else "", listing]
+        printed = ", ".join(place for place in places if place)
+        return {"source": table.publication.source, "printed in": printed or None}
     found: dict[str, str | None] = {}
     recorded = table.model_dump(exclude_none=True)
     if table.grid is not None:

@@ -19,11 +19,13 @@ from coefficients.exported_code import exported_values
 from fitting import Form, Stage
 from integrals.reference import Axis, Estimate, Reference, leg
 from integrals.sampling import Sampling
+from programs import write_source
 from quantities import Problem, problem, problems, register
 from quantities.calling_convention import Argument, CallingConvention
+from quantities.loader import load_problems
 from quantities.registry import unregister
 from shadefit.figures.values import axis_hints
-from shadefit.report import explorer
+from shadefit.report import code, explorer, sections
 from shadefit.report import page as report
 
 # Values on the page have eight decimals, and the page's rule for R has an error.
@@ -68,6 +70,8 @@ def some_tables(owner):
 def few_tables():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(explorer, "entries", some_tables)
+        patch.setattr(code, "LISTED", ("hlsl", "wgsl"))
+        patch.setattr(explorer, "LISTED", ("hlsl", "wgsl"))
         yield
 
 
@@ -94,17 +98,24 @@ def outside(quantity, name, place):
     return not all(axis.contains(x) for axis, x in zip(axes, place, strict=True))
 
 
-def in_node(owners, points):
+def model_scripts():
+    """Return the page's scripts that need no page."""
+    own = files("shadefit.report")
+    return "\n".join(own.joinpath(name).read_text(encoding="utf-8") for name in explorer.MODEL)
+
+
+def in_node(owners, points, main=_MAIN):
     """Evaluate quantities and their tables by the page's own code, in Node."""
     if NODE is None:
         pytest.skip("node is not on PATH (Debian: nodejs)")
     functions, known = explorer.functions_and_data(owners)
-    model = files("shadefit.report").joinpath("explorer_model.js").read_text(encoding="utf-8")
+    model = model_scripts()
     parts = [
         explorer.printed(functions),
         f"const exported = {{ {', '.join(functions)} }};",
         f"const known = {json.dumps(known, allow_nan=False)};",
-        *(model, _MAIN),
+        "const codes = Object.fromEntries(known.quantities.map(({ name }) => [name, []]));",
+        *(model, main),
     ]
     given = json.dumps({name: rows.tolist() for name, rows in points.items()})
     script = "\n".join(parts)
@@ -222,7 +233,7 @@ def browser():
 def address(tmp_path_factory, script) -> str:
     path: Path = tmp_path_factory.mktemp("report") / "report.html"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report, "script", lambda: script)
+        patch.setattr(report, "script", lambda more: script)
         path.write_text(report.assemble("", "", "", ""), encoding="utf-8")
     return path.as_uri()
 
@@ -315,6 +326,8 @@ def test_the_discs_follow_the_material(page):
             "() => [...document.querySelectorAll('#discs canvas')].map((c) => c.toDataURL())"
         )
 
+    # The errors of one table are so small that they have no colour on the scale of the other.
+    page.select_option("#maps", "own")
     before = drawn()
     assert len(before) == 3
     assert len(set(before)) == 3
@@ -337,17 +350,21 @@ def test_tables_are_drawn_when_they_are_ticked(page):
     for box in page.locator("#values input").all():
         box.uncheck()
     assert len(curves(page)) == 1
-    assert "no table is chosen" in page.locator("#errors-chart svg").get_attribute("aria-label")
+    assert "no table is chosen" in page.locator("#errors-chart > svg").get_attribute("aria-label")
 
 
 def test_what_is_out_of_range_is_marked_and_not_taken(page):
     shown = values(page)
+    message = page.locator("#message-alpha")
+    assert page.get_attribute("#enter-alpha", "aria-describedby") == "message-alpha"
     for wrong in ("2", "", "-1"):
         page.fill("#enter-alpha", wrong)
         assert page.get_attribute("#enter-alpha", "aria-invalid") == "true"
+        assert message.inner_text() == "α must be a number from 0.05 to 1"
         assert values(page) == shown
     page.fill("#enter-alpha", "0.36")
     assert page.get_attribute("#enter-alpha", "aria-invalid") == "false"
+    assert message.is_hidden()
     assert values(page) != shown
 
 
@@ -356,7 +373,7 @@ def test_a_curve_can_be_drawn_against_any_argument(page):
     for axis in problem("ps").axes:
         page.select_option("#against", axis.name)
         seen.add(curves(page)[0])
-        label = page.locator("#values-chart svg").get_attribute("aria-label")
+        label = page.locator("#values-chart > svg").get_attribute("aria-label")
         assert f"against {axis.symbol} from" in label
     assert len(seen) == 4
 
@@ -392,3 +409,299 @@ def test_it_fits_a_phone_in_either_scheme(browser, address, scheme):
     light = sum(map(int, re.findall(r"\d+", paper))) > 380
     assert light == (scheme == "light")
     context.close()
+
+
+def ticked(page):
+    return {
+        row.get_attribute("data-table")
+        for row in page.locator("#values tr").all()
+        if row.locator("input:checked").count()
+    }
+
+
+def test_best_tables_are_drawn_at_first(page):
+    for quantity in PLACES:
+        choose(page, quantity)
+        own = some_tables(problem(quantity))
+        best = {entry.name for entry in own if entry.kind == "best"}
+        if best:
+            assert ticked(page) == best | {f"published/{quantity}"}
+        else:
+            assert ticked(page) == {entry.name for entry in own}
+
+
+def test_at_most_three_best_tables_are_drawn_at_first():
+    for owner in problems().values():
+        own = entries(owner)
+        best = [entry for entry in explorer.drawn_at_first(own) if entry.kind == "best"]
+        errors = [
+            entry.require_table().errors.off_grid.max for entry in own if entry.kind == "best"
+        ]
+        assert len(best) == min(3, len(errors))
+        if errors:
+            drawn = [entry.require_table().errors.off_grid.max for entry in best]
+            assert {min(errors), max(errors)} <= set(drawn)
+
+
+def test_a_click_on_a_curve_sets_the_argument(page):
+    box = page.locator("#values-chart").bounding_box()
+    for share in (0.3, 0.8):
+        shown = values(page)
+        page.mouse.click(box["x"] + share * box["width"], box["y"] + 100)
+        curves(page)
+        assert values(page) != shown
+        assert mark_of(page) == pytest.approx(share * box["width"], abs=1)
+    # On the other side of the zenith the azimuth is the opposite one.
+    assert page.input_value("#enter-phi") == "90"
+    page.mouse.click(box["x"] + 0.3 * box["width"], box["y"] + 100)
+    assert page.input_value("#enter-phi") == "-90"
+    before = curves(page)
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 100)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 100)
+    page.mouse.up()
+    assert curves(page) == before
+    assert page.input_value("#enter-phi") == "90"
+
+
+def test_a_click_on_a_map_sets_the_direction(page):
+    canvas = page.locator("#discs canvas").nth(1)
+    canvas.scroll_into_view_if_needed()
+    width = canvas.bounding_box()["width"]
+    # 0.4 and 0.6 of the radius from the centre: the sines of the polar angles
+    canvas.click(position={"x": width / 2, "y": width * 0.3})
+    assert float(page.input_value("#enter-theta_u")) == pytest.approx(23.6, abs=0.5)
+    assert float(page.input_value("#enter-phi")) == pytest.approx(90, abs=2)
+    canvas.click(position={"x": width * 0.8, "y": width / 2})
+    assert float(page.input_value("#enter-theta_u")) == pytest.approx(36.9, abs=0.7)
+    assert float(page.input_value("#enter-phi")) == pytest.approx(0, abs=2)
+
+
+def test_maps_have_colour_bars_whose_scale_adapts(page):
+    def ends():
+        curves(page)
+        every = [bar.inner_text().split() for bar in page.locator("#discs .ends").all()]
+        return [[float(value.replace("−", "-")) for value in bar] for bar in every]
+
+    common = ends()
+    assert len(common) == 3
+    assert common[1] == common[2]
+    assert common[0] == [0, 0.5, 1]
+    assert common[1][0] == -common[1][2]
+    page.get_by_label("published/ps", exact=True).uncheck()
+    alone = ends()
+    assert 0 < alone[1][2] < common[1][2] / 100
+    page.get_by_label("published/ps", exact=True).check()
+    assert ends() == common
+    page.select_option("#maps", "own")
+    assert ends()[2] == alone[1]
+
+
+def test_errors_that_differ_much_are_drawn_on_a_logarithmic_scale(page):
+    def label():
+        curves(page)
+        return page.locator("#errors-chart .name").nth(1).inner_html()
+
+    assert label() == "|table − exact|"
+    page.select_option("#errors", "linear")
+    assert label() == "table − exact"
+    page.select_option("#errors", "automatic")
+    page.get_by_label("published/ps", exact=True).uncheck()
+    assert label() == "table − exact"
+
+
+def test_the_address_keeps_the_state(page):
+    choose(page, "g")
+    enter(page, "g", (0.3, 0.25))
+    page.select_option("#against", "density")
+    page.select_option("#errors", "linear")
+    page.select_option("#code-in", "wgsl")
+    page.get_by_label("published/g", exact=True).uncheck()
+    page.wait_for_url(lambda url: "table=published/g" not in url and "errors=linear" in url)
+    shown, drawn, code = values(page), curves(page), page.inner_text("#code-text")
+    other = page.context.new_page()
+    other.goto(page.url)
+    other.wait_for_selector("#errors-chart path")
+    assert values(other) == shown
+    assert curves(other) == drawn
+    assert ticked(other) == ticked(page)
+    assert other.inner_text("#code-text") == code
+    assert other.input_value("#errors") == "linear"
+    # A link to a section leaves the state as it is.
+    other.click('nav a[href="#summary"]')
+    assert values(other) == shown
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [
+        "quantity=__proto__&at.alpha=1",
+        "quantity=ps&at.alpha=7&against=nothing&table=nothing&errors=toString&code=<b>&language=x",
+        "quantity=ps&at.alpha=&at.phi=NaN&at.theta_f=Infinity&at.theta_u=1e999",
+        "%E0%A4%A&quantity",
+    ],
+)
+def test_an_address_of_somebody_else_does_no_harm(page, address, hostile):
+    before = values(page)
+    other = page.context.new_page()
+    failed = []
+    other.on("pageerror", lambda error: failed.append(str(error)))
+    other.goto(f"{address}#{hostile}")
+    other.wait_for_selector("#errors-chart path")
+    assert values(other) == before
+    assert failed == []
+    wrong = [text for text in other.locator(".message").all_inner_texts() if text]
+    assert len(wrong) == (hostile.count("at.") if "=ps" in hostile else 0)
+    other.close()
+
+
+def test_the_code_of_a_table_is_shown_and_copied(page):
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    choose(page, "q")
+    best = next(entry.name for entry in some_tables(problem("q")) if entry.kind == "best")
+    assert page.input_value("#code-of") == best
+    for name, language in (("published/q", "hlsl"), ("exact/q", "wgsl"), (best, "hlsl")):
+        page.select_option("#code-of", name)
+        page.select_option("#code-in", language)
+        written = write_source(resolve(name).functions("float"), language)
+        assert page.inner_text("#code-text").endswith(written)
+        command = f"shadefit export {name} --to {language}"
+        assert page.inner_text("#code-command") == command
+    page.click("#copy")
+    page.wait_for_function("() => document.querySelector('#copied').textContent === 'Copied.'")
+    copied = page.evaluate("() => navigator.clipboard.readText()")
+    assert copied == page.locator("#code-text").evaluate("(each) => each.textContent")
+    assert copied.startswith("// SPDX-License-Identifier: Apache-2.0\n")
+    choose(page, "ps")
+    # The code is that of the table that was ticked last.
+    page.get_by_label("published/ps@printed").check()
+    assert page.input_value("#code-of") == "published/ps@printed"
+
+
+def test_charts_stay_in_sight_on_a_phone(browser, address):
+    context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
+    opened = context.new_page()
+    opened.goto(address)
+    opened.wait_for_selector("#errors-chart path")
+    assert opened.evaluate("() => document.documentElement.scrollWidth") <= 390
+    for control in ("#enter-alpha", "#against", "#values tr:last-child"):
+        opened.locator(control).evaluate("(each) => each.scrollIntoView({ block: 'end' })")
+        charts = opened.locator(".charts").bounding_box()
+        own = opened.locator(control).bounding_box()
+        assert charts["y"] >= 0
+        assert charts["height"] <= 844 / 3 + 10
+        assert charts["y"] + charts["height"] <= own["y"]
+        assert own["y"] + own["height"] <= 845
+    context.close()
+
+
+@pytest.fixture
+def examples():
+    """Load quantities with a closed form, with a quadrature, and of data."""
+    folder = Path(__file__).parents[2] / "examples"
+    files_of = {"soft": "soft_step.py", "fresnel": "fresnel.py", "albedo": "albedo.py"}
+    for file in files_of.values():
+        load_problems(str(folder / file))
+    yield {name: problem(name) for name in files_of}
+    for name in files_of:
+        unregister(name)
+
+
+def test_quantities_of_a_user_are_shown_as_far_as_they_are_known(
+    browser, examples, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(explorer, "problems", lambda: examples)
+    path = tmp_path / "report.html"
+    path.write_text(report.assemble(sections.summary(list(examples.values())), "", "", ""))
+    opened = browser.new_page()
+    said = []
+    opened.on("pageerror", lambda error: said.append(str(error)))
+    opened.goto(path.as_uri())
+    opened.wait_for_selector("#values-chart path")
+    names = [box.get_attribute("value") for box in opened.locator('[name="quantity"]').all()]
+    # Between the points of data nothing is known, and there is no table.
+    assert names == ["soft", "fresnel"]
+    assert "E, data of albedo.csv" in opened.inner_text("#summary")
+    assert len(curves(opened)) == 1
+    assert values(opened)["exact"][0] == f"{np.tanh(2 * 0.75):.8f}"
+    assert opened.input_value("#code-of") == "exact/soft"
+    choose(opened, "fresnel")
+    assert len(curves(opened)) == 1
+    assert opened.locator("#errors-chart").is_hidden()
+    assert opened.locator("#scales").is_hidden()
+    assert "no formula for the exact values of F_avg" in opened.inner_text("#no-exact")
+    assert "FresnelAverage" in opened.inner_text("#code-text")
+    opened.mouse.click(*(opened.locator("#values-chart").bounding_box()[k] + 120 for k in "xy"))
+    assert opened.input_value("#enter-eta") != "2"
+    assert said == []
+    opened.close()
+
+
+def linear(channel):
+    return channel / 12.92 if channel <= 0.04045 else ((channel + 0.055) / 1.055) ** 2.4
+
+
+def oklab(colour):
+    """Return the place of a colour '#rrggbb' in OKLab (B. Ottosson, 2020)."""
+    red, green, blue = (linear(int(colour[i : i + 2], 16) / 255) for i in (1, 3, 5))
+    long = np.cbrt(0.4122214708 * red + 0.5363325363 * green + 0.0514459929 * blue)
+    medium = np.cbrt(0.2119034982 * red + 0.6806995451 * green + 0.1073969566 * blue)
+    short = np.cbrt(0.0883024619 * red + 0.2817188376 * green + 0.6299787005 * blue)
+    return np.array(
+        [
+            0.2104542553 * long + 0.7936177850 * medium - 0.0040720468 * short,
+            1.9779984951 * long - 2.4285922050 * medium + 0.4505937099 * short,
+            0.0259040371 * long + 0.7827717662 * medium - 0.8086757660 * short,
+        ]
+    )
+
+
+def test_no_colour_is_repeated():
+    style = files("shadefit.report").joinpath("report.css").read_text(encoding="utf-8")
+    light, dark = re.findall(r":root \{(.*?)\}", style, re.DOTALL)[:2]
+    for scheme in (light, dark):
+        colours = dict(re.findall(r"--(exact|published|printed|refitted|best-\d): (#\w+);", scheme))
+        assert len(colours) == 14
+        places = np.array([oklab(each) for each in colours.values()])
+        apart = np.linalg.norm(places[:, None] - places[None], axis=-1) + np.eye(len(places))
+        # 0.02 is just noticeable for areas side by side. Thin lines need more.
+        assert apart.min() > 0.08
+    most = max(
+        len([e for e in entries(owner) if e.kind == "best"]) for owner in problems().values()
+    )
+    assert most <= 10
+
+
+_SCALES = """
+const cases = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+console.log(JSON.stringify({
+    range: roundRange([0.487, 0.676]),
+    flat: roundRange([0.3, 0.3]),
+    none: roundRange([NaN, null].map(Number.parseFloat)),
+    far: rangeOfCurves([0.5, 0.6], [[0.55, 1e6, NaN]]),
+    near: rangeOfErrors([[1e-3, -2e-3], [5e-4]], "automatic"),
+    apart: rangeOfErrors([[1e-2, -2e-2], [5e-5, 0]], "automatic"),
+    exactly: rangeOfErrors([[0, 0]], "logarithmic"),
+    powers: powersOfTen(1e-8, 1, 4),
+    within: powersOfTen(0.2, 0.9, 5),
+    up: [0.011, 0.02, 0.2000001, 9, 1e-15].map(roundUp),
+}));
+"""
+
+
+def test_scales_adapt_to_values():
+    found = in_node([], {}, _SCALES)
+    close = {"rel": 1e-9, "abs": 1e-12}
+    assert found["range"] == pytest.approx([0.45, 0.7], **close)
+    assert found["none"] == [0, 1]
+    low, high = found["flat"]
+    assert low < 0.3 < high < low + 1e-5
+    assert found["far"] == pytest.approx([0.5, 0.7], **close)
+    assert found["near"]["logarithmic"] is False
+    assert found["near"]["range"] == pytest.approx([-2e-3, 1e-3], **close)
+    assert found["apart"]["logarithmic"] is True
+    assert found["apart"]["range"] == pytest.approx([1e-7, 0.1], rel=1e-9)
+    assert found["exactly"]["logarithmic"] is False
+    assert found["powers"] == pytest.approx([1e-8, 1e-6, 1e-4, 1e-2, 1], rel=1e-9)
+    assert found["within"] == pytest.approx([0.2, 0.4, 0.6, 0.8], **close)
+    assert found["up"] == pytest.approx([0.02, 0.02, 0.5, 10, 1e-15], rel=1e-9)

@@ -1,16 +1,20 @@
 """The report: one file that loads nothing, and its tables of errors, errata and origins."""
 
+import json
 import re
 import struct
 import zlib
+from dataclasses import replace
+from html import escape
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
 from coefficients.catalogue import entries, resolve, with_published
 from coefficients.frontier import Mark
 from coefficients.proof_text import proof_text
-from coefficients.table import Table
+from coefficients.table import Table, serialise
 from quantities import problem
 from shadefit.cli import main
 from shadefit.figures import pictures
@@ -31,6 +35,7 @@ class Outline(HTMLParser):
     """Collects ids, links, labels and sources, and checks that elements are closed in order."""
 
     EMPTY = frozenset({"meta", "link", "input", "img", "br"})
+    OF_A_CELL = frozenset({"td", "th", "sub"})
 
     def __init__(self, text):
         super().__init__()
@@ -53,7 +58,7 @@ class Outline(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, data):
-        if self.open and self.open[-1] in ("td", "th", "sub") and self.cells:
+        if self.open and self.open[-1] in self.OF_A_CELL and "table" in self.open:
             self.cells[-1] += data
 
 
@@ -61,7 +66,7 @@ class Outline(HTMLParser):
 def assembled():
     with pytest.MonkeyPatch.context() as patch:
         # The explorer's script has tests of its own.
-        patch.setattr(page, "script", lambda: "if (1 < 2) { }")
+        patch.setattr(page, "script", lambda more: "if (1 < 2) { }")
         figure = page.figure("frontier", pictures()["frontier"], png())
         yield page.assemble("", figure, sections.errata(), sections.provenance())
 
@@ -125,13 +130,14 @@ def test_the_summary_has_quantities_without_a_published_table_too():
 def test_the_summary_names_a_quantity_that_has_no_table(monkeypatch):
     monkeypatch.setattr(sections, "marks", lambda owner: ())
     cells = Outline(sections.summary([problem("q")])).cells
-    assert cells[-1].startswith("Q = ")
+    assert cells[-2].startswith("Q = ")
+    assert cells[-1] == "There is no table."
 
 
 def test_the_proofs_of_a_table_are_those_that_it_records():
-    assert sections._proofs(table("g")) == "; ".join(proof_text(table("g").certificates))
-    assert sections._proofs(table("published/g")) == "—"
-    assert sections._proofs(None) == "—"
+    assert sections._proofs(resolve("g")) == "; ".join(proof_text(table("g").certificates))
+    assert sections._proofs(resolve("published/g")) == "—"
+    assert sections._proofs(resolve("exact/g")) == "—"
 
 
 def test_all_errata_and_all_origins_are_there(assembled):
@@ -140,8 +146,40 @@ def test_all_errata_and_all_origins_are_there(assembled):
         for erratum in known.publication.errata if known.publication else ():
             assert sections.escape(erratum.why) in assembled
         if known.provenance is not None:
-            assert f"<dd>{known.provenance.command}</dd>" in assembled
+            words = known.provenance.command.split(" ")
+            command = escape(" ".join("NAME" if word == entry.name else word for word in words))
+            (names,) = re.findall(rf"<li>{re.escape(command)}: <span[^>]*>(.*?)</span>", assembled)
+            assert entry.name in names.split(", ")
             assert f"jax {known.provenance.versions['jax']}" in assembled
+
+
+def test_what_tables_have_in_common_is_said_once():
+    listed = re.findall(r"<li>(.*): <span", sections.provenance())
+    assert len(set(listed)) == len(listed)
+    versions = [line for line in listed if "jaxlib" in line]
+    every = {
+        table(e.name).provenance.versions["jaxlib"] for e in entries() if table(e.name).provenance
+    }
+    assert len(versions) == len(every)
+
+
+def test_a_title_has_only_what_is_known_of_a_quantity():
+    reference = problem("q").reference
+    bare = replace(reference, definition="", meaning="")
+    assert sections._title(problem("q").changed(reference=bare)) == "Q"
+    assert sections._title(problem("q")) == f"Q = {reference.definition}, {reference.meaning}"
+
+
+def test_a_table_in_a_file_is_measured_beside_the_published_one(tmp_path):
+    path = tmp_path / "<b>.json"
+    path.write_text(serialise(table("best/q-5")))
+    entry = resolve(str(path))
+    text = sections.summary([problem("q")], [entry])
+    cells = Outline(text).cells
+    row, packaged = cells.index(str(path)), cells.index("best/q-5")
+    assert cells[row + 1 : row + 8] == cells[packaged + 1 : packaged + 8]
+    assert "<b>" not in text
+    assert escape(str(path)) in sections.provenance([entry])
 
 
 def test_text_of_tables_is_escaped():
@@ -150,7 +188,9 @@ def test_text_of_tables_is_escaped():
     assert known.provenance is not None
     provenance = known.provenance.model_copy(update={"command": hostile})
     changed = known.model_copy(update={"provenance": provenance})
-    listed = sections._list(sections._origin(changed))
+    facts = {text: ["q"] for text in sections._origin(changed).values() if text}
+    listed = sections._facts(hostile, facts)
+    assert sections._origin(resolve("published/q").require_table())["printed in"]
     assert "<script>" not in listed
     assert "&lt;script&gt;" in listed
     assert sections.markup("a_b < ∫_Ω") == "a<sub>b</sub> &lt; ∫<sub>Ω</sub>"
@@ -165,6 +205,27 @@ def test_bad_places_are_refused_before_the_work(tmp_path, capsys):
         captured = capsys.readouterr()
         assert captured.err.startswith("shadefit: ")
         assert captured.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("exact/q", "exact/q has no coefficients"),
+        ("best/q-99", "best/q-99"),
+        ("file", "is a table of 'unheard', which is not known: allowed are tables of ps, g"),
+    ],
+)
+def test_what_is_no_table_of_a_known_quantity_is_refused(tmp_path, capsys, name, message):
+    if name == "file":
+        known = json.loads(serialise(table("best/q-5")))
+        name = str(tmp_path / "file.json")
+        Path(name).write_text(json.dumps(known | {"quantity": "unheard"}))
+    with pytest.raises(SystemExit) as stopped:
+        main(["report", name, "--out", str(tmp_path / "report.html")])
+    assert stopped.value.code == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert captured.err.count("\n") == 1
 
 
 @pytest.mark.slow

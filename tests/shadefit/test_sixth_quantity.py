@@ -51,8 +51,11 @@ def test_it_goes_through_every_command(tmp_path, capsys):
     assert [each["form"] for each in found["frontier"]] == ["short", "longer"]
     run("figures", "errors-soft", "--out", tmp_path)
     assert (tmp_path / "errors-soft.svg").stat().st_size > 1000
-    run("report", "--out", tmp_path / "report.html")
-    assert "a soft step" in (tmp_path / "report.html").read_text()
+    run("report", table, "--out", tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text()
+    assert "S = tanh(x y), a soft step" in page
+    assert f'<th scope="row">{table}</th>' in page
+    assert "float SoftStep(float x, float y)" in page
 
 
 @pytest.mark.parametrize(
