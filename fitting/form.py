@@ -192,9 +192,10 @@ def _coefficients_of(
     for each in parameters.values():
         if each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD, each.POSITIONAL_ONLY):
             raise ValueError(f"{label(function)}: {each} has no name to call it by: {allowed}")
-    if list(parameters)[:1] and next(iter(parameters)) not in axes:
-        raise ValueError(f"{label(function)} begins with {next(iter(parameters))}: {allowed}")
     for missing in (each for each in axes if each not in parameters):
+        first = next(iter(parameters), None)
+        if first is not None and first not in axes:
+            raise ValueError(f"{label(function)} begins with {first}: {allowed}")
         raise ValueError(f"{label(function)} does not take {missing}: {allowed}")
     found = [each for each in parameters if each not in axes]
     for each, size in sizes.items():

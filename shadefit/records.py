@@ -151,7 +151,7 @@ class CheckRecord(Part):
 
     language: str
     precision: str
-    status: Literal["passed", "failed", "not checked"]
+    status: Literal["passed", "failed", "not good enough", "not checked"]
     reason: str | None
     tool: str | None
     note: str | None

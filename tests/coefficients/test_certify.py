@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from coefficients.catalogue import names_of_best, resolve
+from coefficients.catalogue import resolve
 from coefficients.certify import certify, chosen, with_largest_error
+from coefficients.packaged import names_of_best
 from coefficients.table import parse, serialise
 from fitting import form_values
 from programs.bounding.compiled import compiler_missing

@@ -77,7 +77,7 @@ def test_a_traced_form_is_a_program_of_the_axes():
     fitted = TWO_STAGES.fitted(ROWS)
     program = traced(fitted, fitted, fitted.axes)
     points = np.random.default_rng(1).uniform(0, 1, (20, 2))
-    assert (program.name, program.inputs) == ("toy", ("x", "y"))
+    assert (program.name, program.inputs) == ("form", ("x", "y"))
     expected = [float(fitted(*point)) for point in points]
     np.testing.assert_allclose(evaluate(program, points)[:, 0], expected, rtol=1e-15)
 
@@ -139,8 +139,8 @@ def test_a_function_without_a_docstring_is_described_by_its_name():
 @pytest.mark.parametrize(
     ("function", "start", "message"),
     [
-        (lambda x, c0: c0 * x, [], "lonely does not take 'y': allowed is a function of all axes"),
-        (lambda x, y, c0: c0 * x, [1.0, 2.0], "lonely: 2 starts given for 1 coefficients"),
+        (lambda x, c0: c0 * x, [], "does not take y: allowed are the axes x, y, and then"),
+        (lambda x, y, c0: c0 * x, [1.0, 2.0], "2 starts given for 1 coefficients"),
     ],
 )
 def test_a_plain_function_that_is_no_form_is_refused(function, start, message):

@@ -45,7 +45,6 @@ POLES = {
     # … and 1 − cos(θf − 0.7) does at 0.7, which is none; rounding may leave it just above.
     "touching zero between nodes": rational_r(0, -np.cos(0.7), -np.sin(0.7)),
     "crossing zero between nodes": rational_r(0, -1.00001 * np.cos(0.7), -1.00001 * np.sin(0.7)),
-    "negative everywhere": rational_r(0, -2, -2),
     "G, along a curve": RATIONAL_G.fitted(np.array([-0.9, 0.4, 0.7, -1.3])),
     # d + c₂ν + c₃ν³ is least at ν = 0.1, d = 0.001: c₂/10 + c₃/1000 = −0.001001
     "G, in a narrow dip": RATIONAL_G.fitted(np.array([-0.9, 0.4, -0.015015, 0.5005])),

@@ -462,7 +462,7 @@ UNIT = [(0, 1)]
         (lambda: quadrature(named, UNIT, tolerance=0.0), "tolerance = 0.0: it has to be positive"),
         (
             lambda: quadrature(lambda t, a: jnp.sqrt(t - a), UNIT).legs([PLACE]),
-            r"lambda\(t, a\) is NaN at t = 0\.\d+, a = 0\.\d+",
+            r"lambda\(t, a\) is NaN at t = 0\.\d+, a = [01]",
         ),
         (
             lambda: hemisphere(lambda w, a: jnp.log(w[0])).legs([PLACE]),

@@ -31,7 +31,7 @@ def test_tables_are_proven_printed_and_written(capsys, tmp_path):
     assert list(tmp_path.iterdir()) == [tmp_path / "q-9.json"]
     status, out, _ = run(capsys, "certify", str(tmp_path / "q-9.json"))
     assert status == 0
-    assert "proven" in out and "density 0.2744" in out
+    assert "proven" in out and "density 0.5" in out
 
 
 @needs_compiler

@@ -26,6 +26,7 @@ from shadefit.commands.options import angle
 from shadefit.commands.render import render
 from shadefit.commands.report import report
 from shadefit.commands.search import search
+from shadefit.commands.selection import table_name
 
 NAMES = names()
 REFERENCES = {name: problem.reference for name, problem in problems().items()}
@@ -150,7 +151,7 @@ def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
     capsys, tmp_path, monkeypatch
 ):
     written = []
-    monkeypatch.setattr(refit, "_table", lambda each, *_: table_of(each.name))
+    monkeypatch.setattr(refit, "_table", lambda each, *_: (table_of(table_name(each)), None))
     monkeypatch.setattr(files, "write_whole", lambda path, _: written.append(path.absolute()))
     own = [FOLDER / "fuzz" / "refit" / "q.json", FOLDER / "fuzz" / "best" / "q-4.json"]
     for folder, said in (

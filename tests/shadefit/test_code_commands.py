@@ -156,7 +156,7 @@ def test_verify_says_that_half_is_not_good_enough(capsys, monkeypatch):
     arguments = ["verify", "published/ps", "--to", "python", "--precision", "half"]
     status, out, _ = run(capsys, *arguments, "--json")
     assert status == 0
-    (row,) = json.loads(out)["tables"]["published/ps"]
+    (row,) = json.loads(out)["tables"][0]["checks"]
     assert row["status"] == "not good enough"
     assert "allowed" in row["reason"]
     assert "passed" not in run(capsys, *arguments)[1]
