@@ -4,8 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from xml.sax.saxutils import escape
 
-from coefficients.entry_points import Tables, arguments_of, decimal, height_name, middle
-from programs import Parameter
+from coefficients.entry_points import Tables, arguments_of, decimal, height_name, label_of, middle
 from programs.languages.spelling import shortest_decimal
 from programs.printing.identifiers import ascii_text
 from programs.printing.node_graph import Argument, Result, Source, node_graph
@@ -23,12 +22,12 @@ def isf_document(tables: Tables, headers: Sequence[Mapping[str, str]], source: s
     del headers
     (functions,) = tables
     *others, last = arguments_of(functions)
-    sliders = [(each.name, _label(each), *each.domain, middle(each)) for each in others]
+    sliders = [(each.name, label_of(each), *each.domain, middle(each)) for each in others]
     sliders.append((height_name(functions), "value at the upper edge", 0.1, 1.0, 1.0))
     keys = ("NAME", "LABEL", "MIN", "MAX", "DEFAULT")
     described = {
         "ISFVSN": _ISF_VERSION,
-        "DESCRIPTION": f"{functions[-1].name} from left to right over {_label(last)}",
+        "DESCRIPTION": f"{functions[-1].name} from left to right over {label_of(last)}",
         "CATEGORIES": ["Generator"],
         "INPUTS": [{"TYPE": "float", **dict(zip(keys, each, strict=True))} for each in sliders],
     }
@@ -54,7 +53,7 @@ def materialx_document(tables: Tables, headers: Sequence[Mapping[str, str]], sou
         for each in arguments_of(functions):
             low, high = map(decimal, each.domain)
             value = {"name": each.name, "type": "float", "value": decimal(middle(each))}
-            shown = {"uiname": _label(each), "uimin": low, "uimax": high}
+            shown = {"uiname": label_of(each), "uimin": low, "uimax": high}
             lines.append(f"    <input {_attributes(value | shown)} />")
         lines += ['    <output name="out" type="float" />', "  </nodedef>"]
         lines += _graph(functions, name)
@@ -67,16 +66,16 @@ def _graph(functions: Sequence, name: str) -> list[str]:
     for number, node in enumerate(nodes):
         lines.append(f'    <{node.category} name="{_node_name(number)}" type="float">')
         for place, source in node.inputs:
-            given = {"name": place, "type": "float"} | _connection(source, "interfacename")
+            given = {"name": place, "type": "float"} | _connection(source)
             lines.append(f"      <input {_attributes(given)} />")
         lines.append(f"    </{node.category}>")
-    output = {"name": "out", "type": "float"} | _connection(value, "interfacename")
+    output = {"name": "out", "type": "float"} | _connection(value)
     return [*lines, f"    <output {_attributes(output)} />", "  </nodegraph>"]
 
 
-def _connection(source: Source, argument: str) -> dict[str, str]:
+def _connection(source: Source) -> dict[str, str]:
     if isinstance(source, Argument):
-        return {argument: source.name}
+        return {"interfacename": source.name}
     if isinstance(source, Result):
         return {"nodename": _node_name(source.node)}
     return {"value": shortest_decimal(source, "float")}
@@ -84,11 +83,6 @@ def _connection(source: Source, argument: str) -> dict[str, str]:
 
 def _node_name(number: int) -> str:
     return f"step{number}"
-
-
-def _label(parameter: Parameter) -> str:
-    unit = "" if parameter.unit == "1" else f" ({ascii_text(parameter.unit)})"
-    return f"{parameter.name}{unit}"
 
 
 def _attributes(values: Mapping[str, str]) -> str:

@@ -1,9 +1,10 @@
 """The code that a host of shaders calls: blocks of lines after the exported functions of tables."""
 
+import json
 from collections.abc import Sequence
 
 from programs import Function, Parameter
-from programs.printing.identifiers import free_name
+from programs.printing.identifiers import ascii_text, free_name
 
 # The exported functions of each table, in the order of their calls
 Tables = Sequence[tuple[Function, ...]]
@@ -19,6 +20,12 @@ def middle(parameter: Parameter) -> float:
     """Return the middle of an argument's domain."""
     low, high = parameter.domain
     return (low + high) / 2
+
+
+def label_of(parameter: Parameter) -> str:
+    """Return the name of an argument and its unit, in ASCII, for a user interface."""
+    unit = "" if parameter.unit == "1" else f" ({ascii_text(parameter.unit)})"
+    return f"{parameter.name}{unit}"
 
 
 def arguments_of(functions: tuple[Function, ...]) -> list[Parameter]:
@@ -119,10 +126,10 @@ def blender_shader(tables: Tables) -> list[list[str]]:
     lines = []
     for each in given:
         low, high = map(decimal, each.domain)
-        unit = "" if each.unit == "1" else f', string units = "{each.unit}"'
         lines += [
             f"    float {each.name} = {decimal(middle(each))}",
-            f"        [[ float min = {low}, float max = {high}{unit} ]],",
+            f"        [[ string label = {json.dumps(label_of(each))}, float min = {low}, "
+            f"float max = {high} ]],",
         ]
     return [
         [
