@@ -23,7 +23,7 @@ def isf_document(tables: Tables, headers: Sequence[Mapping[str, str]], source: s
     (functions,) = tables
     *others, last = arguments_of(functions)
     sliders = [(each.name, label_of(each), *each.domain, middle(each)) for each in others]
-    sliders.append((height_name(functions), "value at the upper edge", 0.1, 1.0, 1.0))
+    sliders.append((height_name(functions), "value at the upper edge", 0.1, 10.0, 1.0))
     keys = ("NAME", "LABEL", "MIN", "MAX", "DEFAULT")
     described = {
         "ISFVSN": _ISF_VERSION,

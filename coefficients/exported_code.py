@@ -111,6 +111,12 @@ def source_file(
         )
     if hosted is not None and len(listed) > 1 and not hosted.several:
         raise ValueError(f"bundle {options.bundle!r} is of {len(listed)} tables; allowed: one")
+    holds_code = hosted is None or hosted.holds_code
+    if not holds_code and (constants, options.layout) != ("inline", DEFAULTS.layout):
+        raise ValueError(
+            f"bundle {options.bundle!r} holds no code; allowed are constants 'inline' and layout "
+            f"{DEFAULTS.layout!r}"
+        )
     guard = _guard(listed, precision, function_name, options.prefix)
 
     def written(headers: Sequence[Mapping[str, str]]) -> str:
@@ -131,7 +137,6 @@ def source_file(
     # measurements.
     written([{}] * len(listed))
     command = ["shadefit", "export", *option_for(listed[0].problem)]
-    holds_code = hosted is None or hosted.holds_code
     command += [entry.name for entry in listed]
     command += ["--to", spelled.key] if holds_code else []
     given = {"--precision": precision, "--name": function_name}
