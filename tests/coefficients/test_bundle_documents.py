@@ -20,6 +20,7 @@ from programs import Parameter, function, toolchain
 from programs.printing.node_graph import Argument, Node, Result
 from programs.toolchains import osl
 from programs.toolchains.process import execute, missing_command
+from shadefit.cli import main
 from tests.standard_nodes import evaluate_nodes
 
 PS = ("alpha", "thetaF", "NdotU", "TdotU")
@@ -209,3 +210,10 @@ def test_isf_draws_a_curve(written):
 def test_a_file_of_one_shader_refuses_several_tables(kind, written):
     with pytest.raises(ValueError, match=f"bundle '{kind}' is of 2 tables; allowed: one"):
         written(kind, "published/q", "best/g-9")
+
+
+def test_the_command_line_has_the_options_of_the_bundle(written, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(["export", "best/ps-11", "--bundle", "isf"])
+    assert stopped.value.code == 0
+    assert capsys.readouterr().out == written("isf", "best/ps-11")
