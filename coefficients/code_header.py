@@ -38,11 +38,14 @@ def cost_text(cost: Cost) -> str:
     return f"{cost.operations} operations ({', '.join(kinds)}{fused})"
 
 
-def header_of(entry: Entry, trial: Trial, key: str, source: str, command: str) -> dict[str, str]:
+def header_of(
+    entry: Entry, trial: Trial, key: str, source: str | None, command: str
+) -> dict[str, str]:
     """Return the labels and texts of the comment above an entry's exported functions.
 
     Arguments: `trial`, with the functions and the precision; `key`, a key of LANGUAGES; `source`,
-    the code that is run to measure its error; `command`, which makes the file.
+    the code that is run to measure its error, None if the file holds no code; `command`, which
+    makes the file.
     """
     functions, precision = trial.calls.functions, trial.precision
     reference = entry.problem.reference
@@ -130,11 +133,11 @@ def _domain(functions: Sequence[Function]) -> str:
     )
 
 
-def _values(trial: Trial, key: str, source: str) -> tuple[np.ndarray, str]:
+def _values(trial: Trial, key: str, source: str | None) -> tuple[np.ndarray, str]:
     """Return the values (n,) of a trial's code, and a text that says how they were found."""
     name = language(key).name
-    reason = f"{name} was not run"
-    if toolchain(key).missing(trial.precision) is None:
+    reason = f"{name} was not run" if source is not None else "nodes were not run"
+    if source is not None and toolchain(key).missing(trial.precision) is None:
         try:
             return run_code(trial, key, source), f"this code run in {name}"
         except ToolchainError as error:

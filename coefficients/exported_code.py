@@ -109,10 +109,18 @@ def source_file(
             f"bundle {options.bundle!r} is not for {spelled.name} in {kind}: allowed is "
             f"{hosted.language} in float"
         )
+    if hosted is not None and len(listed) > 1 and not hosted.several:
+        raise ValueError(f"bundle {options.bundle!r} is of {len(listed)} tables; allowed: one")
+    holds_code = hosted is None or hosted.holds_code
+    if not holds_code and (constants, options.layout) != ("inline", DEFAULTS.layout):
+        raise ValueError(
+            f"bundle {options.bundle!r} holds no code; allowed are constants 'inline' and layout "
+            f"{DEFAULTS.layout!r}"
+        )
     guard = _guard(listed, precision, function_name, options.prefix)
 
     def written(headers: Sequence[Mapping[str, str]]) -> str:
-        return write_sections(
+        source = write_sections(
             [Section(*pair) for pair in zip(called, headers, strict=True)],
             spelled,
             kind,
@@ -121,12 +129,16 @@ def source_file(
             namespace=options.namespace,
             ending=[] if hosted is None else hosted.code(called),
         )
+        if hosted is None or hosted.document is None:
+            return source
+        return hosted.document(called, headers, source)
 
     # The source is first written without its header: if that is not possible, no time is spent on
     # measurements.
     written([{}] * len(listed))
     command = ["shadefit", "export", *option_for(listed[0].problem)]
-    command += [*(entry.name for entry in listed), "--to", spelled.key]
+    command += [entry.name for entry in listed]
+    command += ["--to", spelled.key] if holds_code else []
     given = {"--precision": precision, "--name": function_name}
     given |= {"--constants": None if constants == "inline" else constants}
     command += [word for flag, value in given.items() if value for word in (flag, value)]
@@ -136,7 +148,8 @@ def source_file(
         trial = trial_of(entry, kind)
         trial = replace(trial, calls=replace(trial.calls, functions=functions))
         bare = write_source(functions, spelled, kind, constants=constants)
-        headers.append(header_of(entry, trial, spelled.key, bare, made_by or shlex.join(command)))
+        run = bare if holds_code else None
+        headers.append(header_of(entry, trial, spelled.key, run, made_by or shlex.join(command)))
     headers[0] = {LICENCE_LABEL: LICENCE, **headers[0]}
     return written(headers)
 

@@ -74,8 +74,8 @@ def export(
     bundle: Annotated[
         str | None,
         typer.Option(
-            help="shadertoy, unity or unreal: a file for this program, with its entry points, in "
-            "its language, and with --interface material.",
+            help="shadertoy, isf, unity, unreal, materialx or blender-osl: a file for this "
+            "program, with its entry points, in its language, and with --interface material.",
             metavar="HOST",
         ),
     ] = None,
@@ -86,10 +86,12 @@ def export(
     that was measured.
     """
     require_tables(tables)
+    from coefficients.bundles import bundle as find_bundle
     from coefficients.bundles import language_of_bundle
 
     if bundle is not None:
         to, interface = to or language_of_bundle(bundle), interface or "material"
+        layout = layout or find_bundle(bundle).layout
     key = _language(to, output)
     from coefficients.catalogue import resolve
     from coefficients.code_options import CodeOptions

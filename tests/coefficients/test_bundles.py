@@ -80,10 +80,13 @@ def test_shadertoy_compiles_as_an_image_shader(tmp_path):
 def test_a_bundle_has_its_own_language():
     assert {kind: language_of_bundle(kind) for kind in BUNDLES} == {
         "shadertoy": "glsl-es",
+        "isf": "glsl",
         "unity": "hlsl",
         "unreal": "hlsl",
+        "materialx": "glsl",
+        "blender-osl": "osl",
     }
-    with pytest.raises(ValueError, match="bundle 'godot' is unknown; allowed: shadertoy, unity"):
+    with pytest.raises(ValueError, match="bundle 'godot' is unknown; allowed: shadertoy, isf"):
         language_of_bundle("godot")
     for key, precision in (("glsl", None), ("hlsl", "half")):
         with pytest.raises(ValueError, match="allowed is hlsl in float"):
