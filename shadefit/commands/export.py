@@ -86,10 +86,10 @@ def export(
     that was measured.
     """
     require_tables(tables)
-    from coefficients.bundles import bundle as find_bundle
-    from coefficients.bundles import language_of_bundle
-
     if bundle is not None:
+        from coefficients.bundles import bundle as find_bundle
+        from coefficients.bundles import language_of_bundle
+
         to, interface = to or language_of_bundle(bundle), interface or "material"
         layout = layout or find_bundle(bundle).layout
     key = _language(to, output)

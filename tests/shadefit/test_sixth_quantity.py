@@ -19,7 +19,8 @@ def _registered():
     unregister("soft")
 
 
-def test_it_goes_through_every_command(tmp_path, capsys):
+@pytest.fixture
+def run(capsys):
     def run(*arguments) -> str:
         command, *rest = map(str, arguments)
         with pytest.raises(SystemExit) as ended:
@@ -28,6 +29,22 @@ def test_it_goes_through_every_command(tmp_path, capsys):
         assert ended.value.code == 0, output.err
         return output.out
 
+    return run
+
+
+@pytest.mark.slow
+def test_it_is_in_the_report(run, tmp_path):
+    """The report draws all pictures."""
+    run("refit", "--out", tmp_path)
+    table = tmp_path / "soft.json"
+    run("report", table, "--out", tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text()
+    assert "S = tanh(x y), a soft step" in page
+    assert f'<th scope="row">{table}</th>' in page
+    assert "float SoftStep(float x, float y)" in page
+
+
+def test_it_goes_through_every_command(run, tmp_path):
     table = tmp_path / "soft.json"
     largest = {}
     for norm in ("l2", "linf"):
@@ -51,11 +68,6 @@ def test_it_goes_through_every_command(tmp_path, capsys):
     assert [each["form"] for each in found["frontier"]] == ["short", "longer"]
     run("figures", "errors-soft", "--out", tmp_path)
     assert (tmp_path / "errors-soft.svg").stat().st_size > 1000
-    run("report", table, "--out", tmp_path / "report.html")
-    page = (tmp_path / "report.html").read_text()
-    assert "S = tanh(x y), a soft step" in page
-    assert f'<th scope="row">{table}</th>' in page
-    assert "float SoftStep(float x, float y)" in page
 
 
 @pytest.mark.parametrize(
