@@ -77,13 +77,18 @@ def written(path, name: str, **changes) -> Entry:
     return resolve(str(path))
 
 
+def again(texts: list[str]) -> list[str]:
+    """Return what is proven of a file too: its largest error is proven by `shadefit certify`."""
+    return [text for text in texts if not text.startswith("errors ≤")]
+
+
 def test_what_a_file_says_of_itself_is_no_proof(tmp_path):
     c = data_of("best/q-9")["coefficients"]
     said = {"denominator_bound": 5.0, "boxes": 1, "range": [0.2, 0.9]}
     lies = written(tmp_path / "lies.json", "best/q-9", certificates=said)
     found = proofs(lies)
     assert "5" not in found[0]
-    assert found[1:] == proofs(resolve("best/q-9"))[1:]
+    assert found[1:] == again(proofs(resolve("best/q-9")))[1:]
     poles = written(
         tmp_path / "poles.json",
         "best/q-9",
@@ -102,7 +107,7 @@ def test_a_file_that_says_falsely_that_it_loses_energy_is_not_believed(tmp_path)
 
 @pytest.mark.parametrize("name", ["q", "best/g-9", "velvet"])
 def test_a_copy_of_a_table_proves_as_much(name, tmp_path):
-    assert proofs(written(tmp_path / "copy.json", name)) == proofs(resolve(name))
+    assert proofs(written(tmp_path / "copy.json", name)) == again(proofs(resolve(name)))
 
 
 @pytest.mark.parametrize(

@@ -86,7 +86,8 @@ EXACT = {
     "sin": lambda a: a.chain(mpmath.sin(a.value), mpmath.cos(a.value)),
     "max": lambda a, b: a if a.value >= b.value else b,
     "min": lambda a, b: a if a.value <= b.value else b,
-    "abs": lambda a: a.chain(abs(a.value), mpmath.sign(a.value)),
+    # At 0 it is not differentiable: the quotient raises ZeroDivisionError.
+    "abs": lambda a: a.chain(abs(a.value), mpmath.mpf(a.value) / abs(mpmath.mpf(a.value))),
     "rsqrt": lambda a: _inverse(_root(a)),
     "exp2": lambda a: a.chain(mpmath.mpf(2) ** a.value, mpmath.mpf(2) ** a.value * mpmath.log(2)),
     "expm1": lambda a: a.chain(mpmath.expm1(a.value), mpmath.exp(a.value)),
