@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fitting.form import Form
+from fitting.goal import Goal
 from fitting.linearity import linear_parts
 from fitting.points.sample import Sample, sample_of
 from fitting.shapes.monomials import Exponents
@@ -49,7 +50,8 @@ class _Columns:
     def __init__(self, whole: Form, numerator: Exponents, denominator: Exponents):
         """Evaluate every monomial once."""
         self.numerator, self.denominator = numerator, denominator
-        self.sample: Sample = sample_of(whole)
+        # Points on faces count too: the largest error of a search is often there.
+        self.sample: Sample = sample_of(whole, Goal("linf"))
         parts = linear_parts(whole, self.sample.points)
         assert parts is not None
         self.parts = parts

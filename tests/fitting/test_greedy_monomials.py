@@ -39,7 +39,7 @@ def sets(most: int):
 def linearised_rms(numerator, denominator) -> float:
     """Return the error that judges a set, of the form itself: see the module."""
     form = toy(numerator, denominator)
-    sample = sample_of(form)
+    sample = sample_of(form, Goal("linf"))
     parts = linear_parts(form, sample.points)
     below = parts.b0
     for _ in range(3):
