@@ -3,12 +3,12 @@
 import math
 
 from coefficients.catalogue import Entry
-from coefficients.rounded_text import rounded_down, rounded_up
 from coefficients.table_parts import Certificates
 from fitting import FittedForm
 from fitting.fit import ENOUGH
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
+from programs.rounded_text import rounded_down, rounded_up
 
 # The ends of a range are written with four decimals.
 _DIGITS = 1e4

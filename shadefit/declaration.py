@@ -25,7 +25,7 @@ from integrals.sampling import Measure, Sampling
 from integrals.sources import Source
 from integrals.user_functions import check_function
 from programs.functions import Parameter, function
-from programs.printing.formula import formula
+from programs.printing.formula import formulas
 from programs.tracing.tracer import trace
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.problem import ExactCode, PlotHints, Published
@@ -232,7 +232,7 @@ class Problem(Quantity):
             program = program_of(form)  # Raises ValueError if the form cannot be exported.
         if form.equation == form.name:
             names = [*map(str, form.coefficient_names), *(axis.symbol for axis in form.axes)]
-            text = formula(program, names)
+            (text,) = formulas(program, names)
             form = replace(form, equation=text if len(text) <= _LONGEST else form.name)
         self.forms = [*self.forms, form]
         return form

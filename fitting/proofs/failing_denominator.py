@@ -6,7 +6,7 @@ from fitting.form import FittedForm
 from fitting.linearity import program_of
 from fitting.points.scattered import scattered_points
 from programs.bounding.denominators import operands
-from programs.printing.formula import formula
+from programs.printing.formula import formulas
 from programs.program import evaluate, subprogram
 
 # The form's divisors are evaluated at 2^_TRIED points and half as many near the boundary.
@@ -33,7 +33,7 @@ def failing_denominator(fitted: FittedForm) -> str:
     room = values / np.where(usual == 0, 1.0, usual)
     row, column = np.unravel_index(np.argmin(np.where(np.isnan(room), -np.inf, room)), room.shape)
     names = [*map(str, np.ravel(form.coefficient_names)), *(axis.symbol for axis in form.axes)]
-    text = formula(subprogram(program, [divisors[column]]), names)
+    (text,) = formulas(subprogram(program, [divisors[column]]), names)
     what = f"{text} " if len(text) <= _LONGEST else "it "
     where = ", ".join(
         f"{axis.name} = {value:.6g}" for axis, value in zip(form.axes, points[row], strict=True)

@@ -11,8 +11,7 @@ import jax.numpy as jnp
 from integrals.reference import Axis
 from integrals.user_functions import label
 from programs.functions import Function, Parameter
-from programs.operations import OPERATIONS
-from programs.program import interpret
+from programs.printing.formula import formulas
 from programs.tracing.tracer import trace
 
 # Tracing needs a range for every input, but the text does not depend on it.
@@ -96,8 +95,7 @@ def written(call: Callable[..., Any], axes: Sequence[Axis], results: int | None)
     parameters = tuple(Parameter(axis.name, _ANY) for axis in axes)
     with jax.ensure_compile_time_eval():
         program = trace(Function("of", "", parameters, results, "result", call))
-    symbols = [(axis.symbol, _ATOM) for axis in axes]
-    return [text for text, _ in interpret(program, symbols, _WRITERS, _number)]
+    return formulas(program, [axis.symbol for axis in axes])
 
 
 def _is_strange(parameter: inspect.Parameter, names: Sequence[str]) -> bool:
@@ -114,46 +112,3 @@ def _results(function: Callable, call: Callable, axes: Sequence[Axis]) -> int | 
     if not each or any(getattr(part, "shape", None) != () for part in each):
         raise ValueError(f"{label(function)} has to return a scalar or a tuple of scalars")
     return len(shapes) if isinstance(shapes, tuple) else None
-
-
-# How tightly a text holds together: a sum, a product, a sign, or a name.
-_SUM, _PRODUCT, _SIGN, _ATOM = range(4)
-_Text = tuple[str, int]
-
-
-def _inside(part: _Text, least: int) -> str:
-    text, holds = part
-    return text if holds >= least else f"({text})"
-
-
-def _to_the_right(part: _Text, least: int) -> str:
-    return f"({part[0]})" if part[0].startswith("−") else _inside(part, least)
-
-
-def _infix(sign: str, holds: int, right: int) -> Callable[[_Text, _Text], _Text]:
-    return lambda a, b: (f"{_inside(a, holds)}{sign}{_to_the_right(b, right)}", holds)
-
-
-def _product(a: _Text, b: _Text) -> _Text:
-    if a == b and a[1] == _ATOM and not a[0].endswith("²"):
-        return f"{a[0]}²", _ATOM
-    return _infix("·", _PRODUCT, _PRODUCT)(a, b)
-
-
-def _called(name: str) -> Callable[..., _Text]:
-    return lambda *parts: (f"{name}({', '.join(text for text, _ in parts)})", _ATOM)
-
-
-_WRITERS: dict[str, Callable[..., _Text]] = {
-    **{name: _called(name) for name in OPERATIONS},
-    "add": _infix(" + ", _SUM, _SUM),
-    "sub": _infix(" − ", _SUM, _PRODUCT),
-    "mul": _product,
-    "div": _infix("/", _PRODUCT, _SIGN),
-    "neg": lambda a: (f"−{_inside(a, _SIGN)}", _SIGN),
-}
-
-
-def _number(value: float) -> _Text:
-    text = repr(int(value)) if float(value).is_integer() and abs(value) < 1e15 else repr(value)
-    return (f"−{text[1:]}", _SIGN) if text.startswith("-") else (text, _ATOM)

@@ -1,19 +1,57 @@
-"""A program as one formula, for people to read."""
+"""Programs as formulas for people to read, such as 'x·(a + b·x²)/(1 + c·x²)'."""
 
-import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from programs.languages import language
-from programs.printing.expression import WritingContext, expression
-from programs.printing.line_breaking import on_one_line
-from programs.program import Program
+from programs.operations import OPERATIONS
+from programs.program import Program, interpret
+
+# How tightly a text holds together: a sum, a product, a sign, or a name.
+_SUM, _PRODUCT, _SIGN, _ATOM = range(4)
+_Text = tuple[str, int]
 
 
-def formula(program: Program, names: Sequence[str]) -> str:
-    """Return a program of one output as a formula, such as 'x * (a + b * x) / (1 + c * x)'.
+def _inside(part: _Text, least: int) -> str:
+    text, holds = part
+    return text if holds >= least else f"({text})"
 
-    `names` are those of the inputs in the formula. A value that is used twice is written twice.
+
+def _to_the_right(part: _Text, least: int) -> str:
+    return f"({part[0]})" if part[0].startswith("−") else _inside(part, least)
+
+
+def _infix(sign: str, holds: int, right: int) -> Callable[[_Text, _Text], _Text]:
+    return lambda a, b: (f"{_inside(a, holds)}{sign}{_to_the_right(b, right)}", holds)
+
+
+def _product(a: _Text, b: _Text) -> _Text:
+    if a == b and a[1] == _ATOM and not a[0].endswith("²"):
+        return f"{a[0]}²", _ATOM
+    return _infix("·", _PRODUCT, _PRODUCT)(a, b)
+
+
+def _called(name: str) -> Callable[..., _Text]:
+    return lambda *parts: (f"{name}({', '.join(text for text, _ in parts)})", _ATOM)
+
+
+_WRITERS: dict[str, Callable[..., _Text]] = {
+    **{name: _called(name) for name in OPERATIONS},
+    "add": _infix(" + ", _SUM, _SUM),
+    "sub": _infix(" − ", _SUM, _PRODUCT),
+    "mul": _product,
+    "div": _infix("/", _PRODUCT, _SIGN),
+    "neg": lambda a: (f"−{_inside(a, _SIGN)}", _SIGN),
+}
+
+
+def _number(value: float) -> _Text:
+    text = repr(int(value)) if float(value).is_integer() and abs(value) < 1e15 else repr(value)
+    return (f"−{text[1:]}", _SIGN) if text.startswith("-") else (text, _ATOM)
+
+
+def formulas(program: Program, names: Sequence[str]) -> list[str]:
+    """Return a formula for each output of a program.
+
+    `names` are those of the inputs in the formulas. A value that is used twice is written twice.
     """
-    context = WritingContext(program, language("python"), "double", dict(enumerate(names)))
-    text = on_one_line(expression(context, program.outputs[0]))
-    return re.sub(r"\b(\d+)\.0\b(?![e\d])", r"\1", text.replace("np.", ""))
+    inputs = [(name, _ATOM) for name in names]
+    return [text for text, _ in interpret(program, inputs, _WRITERS, _number)]

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from programs.rounded_text import rounded_up
+
 
 @dataclass(frozen=True)
 class Difference:
@@ -49,13 +51,9 @@ def text_of(apart: Difference) -> str:
     More digits would change with the compiler's version.
     """
     others = f", {apart.not_finite} values not finite" if apart.not_finite else ""
-    return f"rms {rounded_up(apart.rms)}, largest {rounded_up(apart.largest)}{others}"
+    return f"rms {two_digits(apart.rms)}, largest {two_digits(apart.largest)}{others}"
 
 
-def rounded_up(value: float) -> str:
+def two_digits(value: float) -> str:
     """Write a number that is not negative with two digits, rounded up: 0.13323 as '1.4e-01'."""
-    # A multiple of the second digit that a float cannot hold may be above it by one rounding.
-    text = f"{value:.1e}"
-    if float(text) >= value * (1 - 1e-12):
-        return text
-    return f"{float(text) + 10.0 ** (int(text.partition('e')[2]) - 1):.1e}"
+    return f"{float(rounded_up(value, 2)):.1e}"

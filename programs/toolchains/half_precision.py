@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from programs.toolchains.difference import Difference, rounded_up
+from programs.toolchains.difference import Difference, two_digits
 
 if TYPE_CHECKING:
     from programs.toolchains.verification import Trial
@@ -61,7 +61,7 @@ def verdict(trial: "Trial", apart: Difference) -> tuple[bool, str]:
     good = largest <= allowed.largest and not lost
     some = f", and {lost} values are not finite" if lost else ""
     return good, (
-        f"rounding moves values by up to {rounded_up(largest)}{some} (searched uphill; allowed: "
+        f"rounding moves values by up to {two_digits(largest)}{some} (searched uphill; allowed: "
         f"{allowed.largest:.2g}, {SHARE:.0%} of the largest value)"
     )
 

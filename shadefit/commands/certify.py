@@ -118,7 +118,7 @@ def _print(done: "list[Certification]") -> None:
 
 
 def _row(each: "Certification") -> list[str]:
-    from coefficients.rounded_text import rounded_down, rounded_up
+    from programs.rounded_text import rounded_down, rounded_up
     from shadefit.terminal import place
 
     state = each.state + (", understated" if each.understated else "")

@@ -37,7 +37,7 @@ def list_tables(json: Json = False) -> None:
 
 
 def _errors(table: "Table") -> list[str]:
-    from coefficients.rounded_text import rounded_up
+    from programs.rounded_text import rounded_up
 
     if table.errors is None:
         return ["—", "—"]

@@ -9,7 +9,7 @@ from tests.fitting.toys import toy_form
 def test_the_denominator_with_a_zero_is_named_with_its_place():
     form = toy_form(lambda c, x, y: 1 / (2 + x) + 1 / (c[0] - y), ["b"])
     told = failing_denominator(form.fitted(jnp.array([1.5])))
-    assert told.startswith(": b - y is -")
+    assert told.startswith(": b − y is -")
     assert "y = " in told
 
 

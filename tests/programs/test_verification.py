@@ -10,7 +10,7 @@ from programs.functions import Parameter, function
 from programs.languages import LANGUAGES, precision_of
 from programs.printing.printer import write_source
 from programs.toolchains import ToolchainError, toolchain, verification
-from programs.toolchains.difference import Difference, difference, rounded_up, text_of
+from programs.toolchains.difference import Difference, difference, text_of, two_digits
 from programs.toolchains.interface import Toolchain
 from programs.toolchains.verification import CallSequence, Trial, check, corners, run_code
 
@@ -311,7 +311,7 @@ def test_a_difference_is_written_with_two_digits():
     ],
 )  # fmt: skip
 def test_stated_errors_are_rounded_up(value, text):
-    assert rounded_up(value) == text
+    assert two_digits(value) == text
 
 
 def test_half_is_good_enough_if_rounding_moves_no_value_far():

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from coefficients.packaged import names, packaged_table
-from coefficients.rounded_text import rounded_up
+from programs.rounded_text import rounded_up
 from shadefit.terminal import print_table
 from tests.shadefit.screen import Session, screen
 
