@@ -4,7 +4,6 @@ A name stands for a packaged table (below `coefficients/tables`), for a table in
 for a closed form. The command line resolves it once, into an `Entry`, and passes the entry on.
 """
 
-import re
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -33,7 +32,8 @@ from fitting import FittedForm, Form
 from integrals.reference import Axis
 from programs.functions import Function
 from quantities import Problem, problem, problems
-from quantities.calling_convention import Argument, CallingConvention, renamed
+from quantities.calling_convention import renamed
+from quantities.defaults import default_calling
 from quantities.problem import ExactCode
 
 
@@ -157,16 +157,12 @@ def entry_of(table: Table, name: str) -> Entry:
 
 def _self_contained(table: Table, form: Form) -> Problem:
     """Return the quantity of a table of which nothing else is known."""
-    about = table.about
-    names = about.arguments if about else {axis.name: axis.name for axis in form.axes}
-    arguments = tuple(Argument(axis, own, "both") for axis, own in names.items())
-    function = (
-        about.function
-        if about
-        else "".join(part.capitalize() for part in re.split("[^A-Za-z0-9]+", table.quantity))
-    )
-    summary = f"{form.reference.symbol}; clamps to the domain."
-    return Problem(form.reference, (form,), CallingConvention(function, summary, arguments))
+    about, reference = table.about, form.reference
+    function, names = (about.function, about.arguments) if about else ("", None)
+    order = list(names or [axis.name for axis in form.axes])
+    axes = sorted(form.axes, key=lambda axis: order.index(axis.name))
+    calling = default_calling(table.quantity, axes, reference.symbol, function, names)
+    return Problem(reference, (form,), calling)
 
 
 def load(name: str) -> FittedForm:

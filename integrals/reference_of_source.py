@@ -2,14 +2,18 @@
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
 
+import jax
 import numpy as np
 
 from integrals.data import Data
 from integrals.reference import Axis, Reference
-from integrals.sampling import Sampling
+from integrals.sampling import Measure, Sampling
 from integrals.sources import Source
+from integrals.user_functions import check_function
 
 # The codomain of a quantity that does not state one.
 EVERYTHING = (-math.inf, math.inf)
@@ -94,3 +98,18 @@ def _sampling(axes: int, at_once: int) -> Sampling:
     if axes == 1:
         return Sampling(fitted=11, checked=13, judged=16)
     return Sampling(fitted=13, checked=15, judged=16 if axes == 2 else 17)
+
+
+def weighted(reference: Reference, weight: Callable[..., Any]) -> Reference:
+    """Return a reference whose errors are multiplied by a function of the axes in all fits.
+
+    Raises ValueError if the function takes other arguments, or is NaN at a point that is tried.
+    """
+    check_function(weight, [], [], reference.axes)
+
+    def weights(points: np.ndarray) -> np.ndarray:
+        with jax.enable_x64(True):
+            return np.asarray(jax.vmap(weight)(*points.T))
+
+    measure = Measure(lambda points: weights(points) ** 2, weights)
+    return replace(reference, sampling=replace(reference.sampling, measures={"weight": measure}))

@@ -4,7 +4,6 @@ import dataclasses
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite, pi
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from integrals.reference import Axis, Reference, restricted
 from programs.functions import Function, Record
 from quantities.calling_convention import CallingConvention
 from quantities.family import Family
+from quantities.plot_hints import PlotHints
 
 # The stated error of a closed form is looked at in 2^_PROBES points and half as many more.
 _PROBES = 8
@@ -47,76 +47,7 @@ class ExactCode:
 
 
 @dataclass(frozen=True)
-class AxisHint:
-    """How an axis is drawn.
-
-    Pictures show the axis from `lower` to `upper`. In the report's explorer its slider goes over
-    `explored` (None: the same range) and begins at `start`. All four numbers are in the axis's own
-    unit. Shown values are multiplied by `factor` and have the unit `unit`, such as 180/π and "°".
-
-    `label` is the text at the axis, without the unit; `short_label` (None: `label`) is used where
-    there is little room. Both may contain Matplotlib's mathtext. If `logarithmic`, curves and maps
-    have a logarithmic axis.
-    """
-
-    label: str
-    lower: float
-    upper: float
-    start: float
-    explored: tuple[float, float] | None = None
-    short_label: str | None = None
-    logarithmic: bool = False
-    factor: float = 1.0
-    unit: str = ""
-
-    @classmethod
-    def default(cls, axis: Axis) -> "AxisHint":
-        """Return the hint for an axis that has none: its whole domain, with angles in degrees.
-
-        An infinite end is replaced by a finite one. An end that is not part of the domain is
-        replaced by a value near it.
-        """
-        lower = axis.lower if isfinite(axis.lower) else min(-1.0, 10 * axis.upper)
-        upper = axis.upper if isfinite(axis.upper) else max(1.0, 10 * lower)
-        if axis.open_below:
-            lower += (upper - lower) / 1000
-        angle = axis.unit == "rad"
-        return cls(
-            axis.symbol,
-            lower,
-            upper,
-            (lower + upper) / 2,
-            logarithmic=axis.scale == "logarithmic" and lower > 0,
-            factor=180 / pi if angle else 1.0,
-            unit="°" if angle else "",
-        )
-
-    @property
-    def slider(self) -> tuple[float, float]:
-        """The range of the slider."""
-        return self.explored or (self.lower, self.upper)
-
-    @property
-    def shown_label(self) -> str:
-        """The label, followed by the unit of the shown values."""
-        return f"{self.label} / {self.unit}" if self.unit else self.label
-
-
-@dataclass(frozen=True)
-class HemisphereHint:
-    """Two axes that together are a direction. They are drawn as a disc, the hemisphere from above.
-
-    `polar` and `azimuth` are the names of the axes, which are in radians. `caption` is the text
-    below the disc.
-    """
-
-    polar: str
-    azimuth: str
-    caption: str
-
-
-@dataclass(frozen=True)
-class AverageHint:
+class Average:
     """The exact value as a weighted sum over another quantity, for the report's explorer.
 
     The explorer runs in a browser and needs a formula. A quantity without a closed form has none,
@@ -127,42 +58,6 @@ class AverageHint:
 
     integrand: "Problem"
     rules: tuple[tuple[np.ndarray, np.ndarray], ...]
-
-
-@dataclass(frozen=True)
-class PlotHints:
-    """How a quantity is drawn.
-
-    * `axes` has a hint for each axis, by name; an axis without one gets `AxisHint.default`.
-    * `values` is the range of values that is drawn; None stands for the range of the exact values.
-      `value_label` is its label and `exact_label` the legend of the exact values. Both may contain
-      mathtext.
-    * The colour scale of the explorer's error maps goes from −`largest_error` to `largest_error`.
-    * Surfaces are seen from `azimuth`, in degrees, and have `surface_nodes` points an axis. Maps of
-      errors have `map_nodes` points an axis.
-    * `cost_label` is the label of an axis with the operations of forms.
-    * `against` is the name of the axis that the explorer draws curves against at first; None stands
-      for the last one.
-    * `hemisphere` is for a quantity with a direction among its axes, `average` for one that is an
-      average of another.
-    """
-
-    axes: Mapping[str, AxisHint] = field(default_factory=dict)
-    values: tuple[float, float] | None = None
-    value_label: str | None = None
-    exact_label: str = "exact"
-    largest_error: float = 0.1
-    azimuth: float = -60.0
-    surface_nodes: int = 41
-    map_nodes: int = 61
-    cost_label: str = "operations"
-    against: str | None = None
-    hemisphere: HemisphereHint | None = None
-    average: AverageHint | None = None
-
-    def axis(self, axis: Axis) -> AxisHint:
-        """Return the hint of an axis, or its default hint if it has none."""
-        return self.axes.get(axis.name) or AxisHint.default(axis)
 
 
 @dataclass(frozen=True)
@@ -195,7 +90,8 @@ class Problem:
     * `error_code`: returns the code with which the largest error of a form is proven, or None if
       there is none for this form. None: the difference from `closed_form`, or from
       the closed form of the reference.
-    * `plot`: how the quantity is drawn; None stands for default hints.
+    * `plot`: how the quantity is drawn; None stands for default hints. `average`: for a quantity
+      that is an average of another one.
     * `topic`: the folder below `coefficients/tables` that has the tables of the quantity; a user's
       quantity has none.
     * `searches_best`: whether a search begins with the forms of the best tables. This is for a
@@ -213,6 +109,7 @@ class Problem:
     error_code: Callable[[FittedForm], ErrorCode | None] | None = None
     exact_code: ExactCode | None = None
     plot: PlotHints | None = None
+    average: Average | None = None
     topic: str = ""
     searches_best: bool = False
 

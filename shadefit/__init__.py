@@ -67,8 +67,8 @@ if TYPE_CHECKING:
     from quantities import register as register
     from quantities.calling_convention import Argument as Argument
     from quantities.calling_convention import CallingConvention as CallingConvention
-    from quantities.problem import AxisHint as AxisHint
-    from quantities.problem import PlotHints as PlotHints
+    from quantities.plot_hints import AxisHint as AxisHint
+    from quantities.plot_hints import PlotHints as PlotHints
     from quantities.problem import Published as Published
     from shadefit.declaration import Problem as Problem
     from shadefit.result import Result as Result
@@ -92,7 +92,8 @@ _HOMES = {
     "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
     "quantities": ("problem", "problems", "register"),
     "quantities.calling_convention": ("Argument", "CallingConvention"),
-    "quantities.problem": ("AxisHint", "PlotHints", "Published"),
+    "quantities.plot_hints": ("AxisHint", "PlotHints"),
+    "quantities.problem": ("Published",),
     "shadefit.declaration": ("Problem",),
     "shadefit.result": ("Result",),
 }

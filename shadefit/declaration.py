@@ -7,8 +7,6 @@ from functools import partial
 from typing import Any
 
 import jax
-import jax.numpy as jnp
-import numpy as np
 
 from fitting.form import Form, plain_form
 from fitting.goal import Norm, Rounding, Side
@@ -20,16 +18,15 @@ from fitting.shapes.pole_sums import pole_sum
 from fitting.shapes.rationals import polynomial, rational
 from integrals.data import Data
 from integrals.reference import Axis, Reference, restricted
-from integrals.reference_of_source import EVERYTHING, make_reference
-from integrals.sampling import Measure, Sampling
+from integrals.reference_of_source import EVERYTHING, make_reference, weighted
+from integrals.sampling import Sampling
 from integrals.sources import Source
-from integrals.user_functions import check_function
-from programs.functions import Parameter, function
 from programs.printing.formula import formulas
-from programs.tracing.tracer import trace
-from quantities.calling_convention import Argument, CallingConvention
-from quantities.problem import ExactCode, PlotHints, Published
+from quantities.calling_convention import CallingConvention
+from quantities.defaults import default_calling, default_exact_code
+from quantities.plot_hints import PlotHints
 from quantities.problem import Problem as Quantity
+from quantities.problem import Published
 from shadefit.result import Result, fit_result
 
 # The names that tables may have
@@ -97,10 +94,10 @@ class Problem(Quantity):
                 codomain=codomain,
             )
         if weight is not None:
-            reference = _weighted(reference, weight)
+            reference = weighted(reference, weight)
         if calling is None:
-            calling = _calling(name, axes, reference.symbol, shader, arguments or {})
-        exact = _exact_code(calling, closed, reference.axes)
+            calling = default_calling(name, axes, reference.symbol, shader, arguments)
+        exact = default_exact_code(calling, closed, reference.axes)
         super().__init__(
             reference,
             [],
@@ -266,56 +263,3 @@ class Problem(Quantity):
             "bounded": bounded,
         }
         return fit_result(self, self.default if form is None else self.find_form(form), goal)
-
-
-def _weighted(reference: Reference, weight: Callable[..., Any]) -> Reference:
-    """Return a reference whose errors are multiplied by a function of the axes in all fits."""
-    check_function(weight, [], [], reference.axes)
-
-    def weights(points: np.ndarray) -> np.ndarray:
-        with jax.enable_x64(True):
-            return np.asarray(jax.vmap(weight)(*points.T))
-
-    measure = Measure(lambda points: weights(points) ** 2, weights)
-    return replace(reference, sampling=replace(reference.sampling, measures={"weight": measure}))
-
-
-def _calling(
-    name: str, axes: Sequence[Axis], symbol: str, shader: str, names: Mapping[str, str]
-) -> CallingConvention:
-    """Return the convention that clamps all arguments, in the order of the axes."""
-    known = [axis.name for axis in axes]
-    for each in names:
-        if each not in known:
-            raise ValueError(f"arguments: {each!r} is no axis: allowed are {', '.join(known)}")
-    default = "".join(part[:1].upper() + part[1:] for part in name.replace("_", "-").split("-"))
-    return CallingConvention(
-        shader or default,
-        f"{symbol}; clamps to the domain.",
-        tuple(Argument(axis.name, names.get(axis.name, axis.name), "both") for axis in axes),
-    )
-
-
-def _exact_code(
-    calling: CallingConvention, closed: Callable[..., Any] | None, axes: Sequence[Axis]
-) -> ExactCode | None:
-    """Return the closed form as code; None if there is none, or if no shader could evaluate it."""
-    if closed is None:
-        return None
-
-    def value(*given):
-        return jnp.asarray(closed(*map(_clamped, given, axes)))
-
-    names = {each.axis: each.name for each in calling.arguments}
-    parameters = [Parameter(names[axis.name], (axis.lower, axis.upper), axis.unit) for axis in axes]
-    made = function(f"{calling.name}Exact", parameters, value, "The closed form.")
-    try:
-        with jax.enable_x64(True):
-            trace(made)
-    except ValueError:
-        return None
-    return ExactCode("closed form", tuple(axes), lambda _: (made,), lambda points: (points,))
-
-
-def _clamped(value: Any, axis: Axis) -> Any:
-    return jnp.maximum(jnp.minimum(value, axis.upper), axis.lower)

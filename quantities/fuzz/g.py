@@ -7,7 +7,8 @@ from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.g_forms import AXES, DECAYS, FACTORS, RATES, candidates, decay_g, tied_g
 from quantities.fuzz.supplement import RATIONAL_G
-from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+from quantities.plot_hints import AxisHint, PlotHints
+from quantities.problem import ExactCode, Problem
 
 # The closed form takes logarithms of the density. The code clamps it to this at least; for a layer
 # so thin, G is at most a thousandth (in half precision a sixteenth) at the least v·n of the domain.

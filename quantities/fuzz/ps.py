@@ -13,7 +13,8 @@ from quantities.fuzz.lights import cosines_at
 from quantities.fuzz.ps_error import error_code
 from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
 from quantities.fuzz.supplement import RATIONAL_PS
-from quantities.problem import AxisHint, ExactCode, HemisphereHint, PlotHints, Problem
+from quantities.plot_hints import AxisHint, HemisphereHint, PlotHints
+from quantities.problem import ExactCode, Problem
 
 _COSINE = (0.0, 1.0)
 # The error of the closed form in float32 is measured and stated for α from this on.

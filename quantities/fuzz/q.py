@@ -13,7 +13,8 @@ from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.q_forms import AXES, LEAST_DENSITY, STRUCTURES, candidates, pole_q
 from quantities.fuzz.supplement import QUADRATIC_Q
-from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+from quantities.plot_hints import AxisHint, PlotHints
+from quantities.problem import ExactCode, Problem
 
 # From this density on, exp(−d) is below the rounding of float64.
 _OPAQUE = 64.0

@@ -9,7 +9,8 @@ from quantities.family import Family
 from quantities.fuzz.ps import PS
 from quantities.fuzz.r_forms import VARIABLES, candidates, monomial_r
 from quantities.fuzz.supplement import RATIONAL_R
-from quantities.problem import AverageHint, AxisHint, PlotHints, Problem
+from quantities.plot_hints import AxisHint, PlotHints
+from quantities.problem import Average, Problem
 
 # The explorer averages P_s over lights by the rule of `integrals.fuzz.r.average_over_lights` with
 # this many nodes an angle. tests/shadefit/test_explorer.py bounds its error.
@@ -60,8 +61,8 @@ R = Problem(
         values=(0.0, 1.0),
         largest_error=1e-3,
         azimuth=-40.0,
-        average=AverageHint(PS, (_POLAR_RULE, _AZIMUTH_RULE)),
     ),
+    average=Average(PS, (_POLAR_RULE, _AZIMUTH_RULE)),
     topic="fuzz",
     searches_best=True,
 )

@@ -5,7 +5,8 @@ from integrals.fuzz.velvet import normalisation
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention, clamped
 from quantities.fuzz.velvet_form import AXES, CONSERVATIVE_NORM
-from quantities.problem import AxisHint, ExactCode, PlotHints, Problem
+from quantities.plot_hints import AxisHint, PlotHints
+from quantities.problem import ExactCode, Problem
 
 _REMARK = "asymmetry is k of Schlick's lobe p_Schlick(k, -sin(t, h)), whose factor r is"
 

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from fitting import FittedForm, form_values
 from quantities import Problem
-from quantities.problem import AxisHint
+from quantities.plot_hints import AxisHint
 from shadefit.figures.style import COLOURS, ERRORS, VALUES
 from shadefit.figures.values import axis_hints, mesh, points_along
 

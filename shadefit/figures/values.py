@@ -8,7 +8,7 @@ from coefficients.catalogue import Entry, entries, published, refitted
 from coefficients.exported_code import exported_values
 from integrals.reference import Axis, Reference
 from quantities import Problem
-from quantities.problem import AxisHint, PlotHints
+from quantities.plot_hints import AxisHint, PlotHints
 
 
 def hints_of(owner: Problem) -> PlotHints:

@@ -17,7 +17,8 @@ from matplotlib import colormaps
 from coefficients.catalogue import Entry, entries
 from programs import Function, Parameter, function, language, write_source
 from quantities import Problem, problems
-from quantities.problem import AverageHint, HemisphereHint
+from quantities.plot_hints import HemisphereHint
+from quantities.problem import Average
 from shadefit.figures.style import ERRORS, VALUES
 from shadefit.figures.values import axis_hints, hints_of
 from shadefit.report.code import LISTED, codes
@@ -61,7 +62,7 @@ def explored(more: Sequence[Entry] = ()) -> list[Problem]:
     return [
         owner
         for owner in sorted(problems().values(), key=lambda owner: owner.topic != "")
-        if owner.closed_form or hints_of(owner).average or _tables(owner, more)
+        if owner.closed_form or owner.average or _tables(owner, more)
     ]
 
 
@@ -136,7 +137,7 @@ def _quantity(page: _Printed, owner: Problem, own: list[Entry]) -> dict:
         ],
         "against": hints.against or owner.axes[-1].name,
         "exact": page.add(_exact(owner)) if owner.closed_form else None,
-        "average": _average(page, hints.average),
+        "average": _average(page, owner.average),
         "hemisphere": _hemisphere(hints.hemisphere),
         "tables": [_table(page, entry) | {"shown": entry in drawn} for entry in own],
         "code": min(drawn, key=_stated).name if drawn else None,
@@ -215,7 +216,7 @@ def _parameters(owner: Problem) -> list[Parameter]:
     ]
 
 
-def _average(page: _Printed, hint: AverageHint | None) -> dict | None:
+def _average(page: _Printed, hint: Average | None) -> dict | None:
     if hint is None:
         return None
     rules = [{"nodes": nodes.tolist(), "weights": w.tolist()} for nodes, w in hint.rules]

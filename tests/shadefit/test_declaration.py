@@ -19,7 +19,7 @@ X = sf.Axis("x", 0, 4)
 def tanh():
     problem = sf.Problem("tanhc", [X], sf.closed_form(jnp.tanh))
     problem.form(
-        lambda x, a, b, c: x·(a + b·x·x) / (1 + c * x * x), name="pade", start=[1, 0.1, 0.4]
+        lambda x, a, b, c: x * (a + b * x * x) / (1 + c * x * x), name="pade", start=[1, 0.1, 0.4]
     )
     return problem
 
@@ -46,7 +46,9 @@ def test_a_notebook_cell_fits_and_shows_itself(result):
 def test_a_result_evaluates_its_form(result):
     a, b, c = result.coefficients.values()
     x = np.array([[0.0, 0.5], [1.0, 4.0]])
-    np.testing.assert_allclose(result(x), x·(a + b·x·x) / (1 + c * x * x), rtol=1e-14, atol=1e-16)
+    np.testing.assert_allclose(
+        result(x), x * (a + b * x * x) / (1 + c * x * x), rtol=1e-14, atol=1e-16
+    )
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -24,7 +24,7 @@ from integrals.reference import Axis, Estimate, Reference, leg
 from integrals.sampling import Sampling
 from quantities import Problem, problem, problems, register
 from quantities.calling_convention import Argument, CallingConvention
-from quantities.problem import AxisHint, PlotHints
+from quantities.plot_hints import AxisHint, PlotHints
 from quantities.registry import unregister
 from shadefit.cli import main
 from shadefit.figures import curves, frontier, maps, pictures, ps_lights, render, search
