@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
+from coefficients.packaged import Kind
 from shadefit.records import (
     AmbientErrors,
     CertifiedTable,
@@ -107,6 +108,21 @@ class BakeSource(Part):
     largest_difference: Size
 
 
+class BesideTable(Part):
+    """A table of the quantity, in the domain that it shares with the LUT.
+
+    `domain` has the ends of the axes of which that is not the whole; it is empty if all is shared.
+    """
+
+    table: str
+    kind: Kind
+    bytes: Count
+    operations: Count
+    rms: Size
+    max: Size
+    domain: dict[str, Annotated[list[Number], Field(min_length=2, max_length=2)]]
+
+
 class BakeOutput(_Output):
     """`shadefit bake`; `errors` are those of the LUT, `tables` are the others of the quantity."""
 
@@ -128,7 +144,7 @@ class BakeOutput(_Output):
     rounding: Size
     errors: ErrorsRecord
     table: BakeSource | None
-    tables: list[dict[str, Any]]
+    tables: list[BesideTable]
 
 
 class SearchOutput(_Output):

@@ -1,7 +1,6 @@
 """`shadefit bake`: write a quantity or a table as a lookup texture, and compare it with fits."""
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -13,8 +12,7 @@ from shadefit.completion import complete_shader
 if TYPE_CHECKING:
     import numpy as np
 
-    from coefficients.lut import Lut
-    from fitting import Errors, FittedForm
+    from fitting import FittedForm
     from integrals.reference import Axis
     from quantities import Problem
 
@@ -75,7 +73,11 @@ def bake(
     from coefficients.lut.beside import coefficient_bytes, difference_from, tables_beside
     from coefficients.lut.files import EXTENSIONS
     from fitting import Domain, judge
+    from shadefit.commands.bake_text import print_bake
+    from shadefit.commands.table_records import errors_record
+    from shadefit.outputs import BakedAxis, BakeOutput, BakeSource, BesideTable
     from shadefit.progress import stages
+    from shadefit.terminal import print_json
 
     counts = _size(size)
     made = _source(source)
@@ -93,23 +95,59 @@ def bake(
         own = None if made.fitted is None else judge(made.fitted, where)
         others = tables_beside(made.owner, where)
     write_whole_bytes(path, data)
-    report = _report(source, path, format, lut, errors)
+    table = None
     if own is not None and made.fitted is not None:
-        report["table"] = {
-            "rms": own.rms,
-            "max": own.largest,
-            "bytes": coefficient_bytes(made.fitted),
-            "operations": made.operations,
-            "largest_difference": difference_from(lut, made.fitted, where),
-        }
-    report["tables"] = [
-        {
-            **{key: value for key, value in asdict(each).items() if key != "largest"},
-            "max": each.largest,
-        }
-        for each in others
-    ]
-    _show(report, json)
+        table = BakeSource(
+            rms=own.rms,
+            max=own.largest,
+            bytes=coefficient_bytes(made.fitted),
+            operations=made.operations,
+            largest_difference=difference_from(lut, made.fitted, where),
+        )
+    report = BakeOutput(
+        file=str(path),
+        format=format,
+        source=source,
+        axes=[
+            BakedAxis(
+                name=axis.name,
+                domain=[axis.lower, axis.upper],
+                unit=axis.unit,
+                scale=axis.scale,
+                coordinate=each.text(axis.name),
+            )
+            for axis, each in zip(lut.axes, lut.coordinates, strict=True)
+        ],
+        size=list(lut.size),
+        texel=lut.texel,
+        span=list(lut.span),
+        filter=lut.filter,
+        centres=lut.centres,
+        weight_bits=lut.weight_bits if lut.filter == "linear" else None,
+        bytes=lut.bytes,
+        fetches=lut.fetches,
+        operations=lut.operations,
+        moved_texels=lut.moved,
+        rounding=lut.rounding,
+        errors=errors_record(errors),
+        table=table,
+        tables=[
+            BesideTable(
+                table=each.table,
+                kind=each.kind,
+                bytes=each.bytes,
+                operations=each.operations,
+                rms=each.rms,
+                max=each.largest,
+                domain={name: list(ends) for name, ends in each.domain.items()},
+            )
+            for each in others
+        ],
+    )
+    if json:
+        print_json(report)
+    else:
+        print_bake(report)
 
 
 @dataclass(frozen=True)
@@ -195,108 +233,3 @@ def _range(text: str) -> tuple[str, tuple[float, float], str | None]:
     except typer.BadParameter:
         raise ValueError(f"range {text!r}: allowed are two numbers or angles") from None
     return name.replace("-", "_"), (low, high), parts[2] if len(parts) == 3 else None
-
-
-def _report(source: str, path: Path, kind: str, lut: "Lut", errors: "Errors") -> dict[str, Any]:
-    return {
-        "file": str(path),
-        "format": kind,
-        "source": source,
-        "size": list(lut.size),
-        "axes": [
-            {
-                "name": axis.name,
-                "domain": [axis.lower, axis.upper],
-                "unit": axis.unit,
-                "scale": axis.scale,
-                "coordinate": each.text(axis.name),
-            }
-            for axis, each in zip(lut.axes, lut.coordinates, strict=True)
-        ],
-        "texel": lut.texel,
-        "span": list(lut.span),
-        "filter": lut.filter,
-        "centres": lut.centres,
-        "weight_bits": lut.weight_bits if lut.filter == "linear" else None,
-        "bytes": lut.bytes,
-        "fetches": lut.fetches,
-        "operations": lut.operations,
-        "moved_texels": lut.moved,
-        "rounding": lut.rounding,
-        "rms": errors.rms,
-        "max": errors.largest,
-        "where": errors.where,
-    }
-
-
-def _show(report: dict[str, Any], json: bool) -> None:
-    from shadefit.terminal import place, print_json, print_table
-
-    if json:
-        from shadefit.outputs import BakeOutput
-
-        errors = {key: report[key] for key in ("rms", "max", "where")}
-        rest = {key: value for key, value in report.items() if key not in errors}
-        print_json(BakeOutput.model_validate({"table": None, **rest, "errors": errors}))
-        return
-    size = "×".join(map(str, report["size"]))
-    label = f"LUT {size}, {report['texel']}, {report['filter']}"
-    row = [label, str(report["bytes"]), str(report["fetches"]), str(report["operations"])]
-    rows = [[*row, f"{report['rms']:.3e}", f"{report['max']:.3e}", ""]]
-    if "table" in report:
-        own = report["table"]
-        cost = [str(own["bytes"]), "0", str(own["operations"])]
-        rows.append([report["source"], *cost, f"{own['rms']:.3e}", f"{own['max']:.3e}", ""])
-    for each in report["tables"]:
-        domain = ", ".join(
-            f"{name} in [{low:.4g}, {high:.4g}]" for name, (low, high) in each["domain"].items()
-        )
-        cost = [str(each["bytes"]), "0", str(each["operations"])]
-        name = f"{each['table']}, refitted" if each["kind"] == "refitted" else each["table"]
-        if name == report["source"]:
-            continue
-        rows.append([name, *cost, f"{each['rms']:.3e}", f"{each['max']:.3e}", domain])
-    columns = ["by", "bytes", "fetches", "operations", "rms", "largest", "only for"]
-    print_table(f"{report['file']}: {report['source']}", columns, rows, _note(report, place))
-
-
-def _filtered(report: dict[str, Any]) -> str:
-    if report["filter"] == "cubic":
-        return "Catmull–Rom filter in the shader."
-    return f"Filter with {report['weight_bits']} fractional bits, as in hardware."
-
-
-def _note(report: dict[str, Any], place: Callable[[dict[str, float]], str]) -> str:
-    """Return the lines below the table: how texels are placed, and which fit is as good."""
-    axes = ", ".join(
-        f"{axis['name']} in [{axis['domain'][0]:.6g}, {axis['domain'][1]:.6g}] ({axis['scale']})"
-        for axis in report["axes"]
-    )
-    lines = [
-        f"Texels over {axes}; centres: {report['centres']}. "
-        f"{_filtered(report)} "
-        f"Rounding to {report['texel']} changes texels by at most {report['rounding']:.1e}. "
-        f"Largest error at {place(report['where'])}."
-    ]
-    coordinates = (axis["coordinate"] for axis in report["axes"])
-    texts = zip("uvw", coordinates, strict=False)
-    lines.append(f"Texture coordinates: {', '.join(f'{u} = {text}' for u, text in texts)}.")
-    if report["span"] != [0.0, 1.0]:
-        low, high = report["span"]
-        lines.append(f"A value is {low!r} + {high - low!r} times the texel.")
-    if report["moved_texels"]:
-        count = report["moved_texels"]
-        lines.append(f"{count} texels without a value have that a tenth of a texel further in.")
-    if "table" in report:
-        apart = report["table"]["largest_difference"]
-        lines.append(f"The LUT differs from {report['source']} by at most {apart:.3e}.")
-    if report["tables"]:
-        whole = [each for each in report["tables"] if not each["domain"]]
-        cheapest = next((each for each in whole if each["max"] <= report["max"]), None)
-        lines.append(
-            "No table of this domain has a largest error that is no larger."
-            if cheapest is None
-            else f"{cheapest['table']} needs {cheapest['operations']} operations for a largest "
-            "error that is no larger."
-        )
-    return "\n".join(lines)

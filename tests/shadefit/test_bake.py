@@ -109,7 +109,7 @@ def test_the_text_says_what_a_shader_must_know(capsys, tmp_path):
     assert "q, refitted" in out
     # The tables are made for a part of this domain.
     assert out.count("density in [0, 0.5]") >= 6
-    assert "No table of this domain has a largest error that is no larger." in out
+    assert "No table of this domain is as accurate." in out
 
 
 def test_a_quantity_of_a_file_is_baked(capsys, tmp_path, soft):
