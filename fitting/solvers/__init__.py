@@ -4,7 +4,7 @@
 * `quotients`: the same for quotients of known features
 * `separable`: the same for forms of two stages whose second stage is linear
 * `exchange`: fits to scattered points, for any goal. It calls `scattered_squares` (least squares
-  from several starts, by `levenberg_marquardt`), `starts` (starts of quotients), `minimax` (the
+  from several starts, by `descent`), `starts` (starts of quotients), `minimax` (the
   largest error, by `linear_programs`) and `extrema` (where the error is largest). `residuals` has
   the errors as functions of the coefficients.
 * `least_squares`: linear and nonlinear least squares, which the solvers on a grid call

@@ -26,7 +26,7 @@ from fitting.solvers.starts import quotient_starts
 PRECISIONS = {"float32": np.float32, "float16": np.float16}
 # A part of a denominator that is smaller than this does not change values beyond rounding by much.
 _NEGLIGIBLE = 1e-10
-SQUARES = "Levenberg–Marquardt (QR)"
+SQUARES = "trust region (SciPy)"
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fitting.solvers.levenberg_marquardt import Descent, levenberg_marquardt
+from fitting.solvers.descent import Descent, descend
 from fitting.solvers.residuals import Residuals
 
 # If no descent converges, starts near the given ones are tried: so many for each, whose
@@ -84,17 +84,17 @@ def _descend(
     def slopes(z: np.ndarray) -> np.ndarray:
         return problem.slopes(z, everywhere)
 
-    def descend(residual, jacobian, z) -> Descent:
-        return levenberg_marquardt(residual, jacobian, z, steps, worthwhile=worthwhile)
+    def from_start(residual, jacobian, z) -> Descent:
+        return descend(residual, jacobian, z, steps, worthwhile)
 
     ends = []
     if problem.is_good(start):
-        ends.append(descend(guarded, slopes, start))
+        ends.append(from_start(guarded, slopes, start))
         if ends[0].converged:
             return ends[0]
-    ends.append(descend(problem.values, slopes, start))
+    ends.append(from_start(problem.values, slopes, start))
     if not problem.is_good(ends[-1].z):
-        ends[-1] = _with_penalty(problem, start, descend, guarded, slopes)
+        ends[-1] = _with_penalty(problem, start, from_start, guarded, slopes)
     good = [end for end in ends if problem.is_good(end.z)]
     # An end that is not stationary may be on the verge of a pole.
     safe = [end for end in good if end.converged or _has_room(problem, end.z)]
@@ -108,7 +108,7 @@ def _has_room(problem: Residuals, z: np.ndarray) -> bool:
     return bool(room.min(initial=1) >= _ROOM * room.mean())
 
 
-def _with_penalty(problem: Residuals, start, descend, guarded, slopes) -> Descent:
+def _with_penalty(problem: Residuals, start, from_start, guarded, slopes) -> Descent:
     """Descend with a penalty on denominators that are not positive, and then without it."""
     room = problem.positive(start)
     size = np.mean(np.abs(room[np.isfinite(room)])) if np.isfinite(room).any() else 1.0
@@ -126,8 +126,8 @@ def _with_penalty(problem: Residuals, start, descend, guarded, slopes) -> Descen
         penalty = -weight * np.where(active, problem.positive_slopes(z, everywhere), 0.0)
         return np.concatenate([slopes(z), penalty])
 
-    end = descend(penalised, both_slopes, start)
+    end = from_start(penalised, both_slopes, start)
     if not problem.is_good(end.z):
         return end
-    free = descend(guarded, slopes, end.z)
+    free = from_start(guarded, slopes, end.z)
     return free if free.converged or _has_room(problem, free.z) else end
