@@ -254,7 +254,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         equation=(
             "P_s in closed form, λ from λ² - (S - T)(1 - e) λ = e, e = E / (g + E), "
             f"g = S + {'max(S, T)' if degree < 0 else '√(S² + T² + m5 c)'}, E = α²c"
-            f"{f', and {steps} steps' if steps else ''}"
+            f"{('', ', and 1 step')[steps] if steps < 2 else f', and {steps} steps'}"
         ),
         least_alpha=least_alpha,
         shape={"steps": steps, "degree": degree, "least_alpha": least_alpha},

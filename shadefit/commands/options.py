@@ -21,7 +21,7 @@ Norm = Annotated[
     goal.Norm | None,
     typer.Option(
         help="l2 minimises squared errors, linf the largest error; "
-        "by default refit does as the table did, search takes linf."
+        "by default refit does as the table did, fit takes l2, search linf."
     ),
 ]
 Side = Annotated[
