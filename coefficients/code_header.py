@@ -55,7 +55,7 @@ def header_of(
     head = {
         "Quantity": f"{entry.problem.description}{meant}",
         "Equation": f"{equation} of table {entry.name}" if entry.fitted else equation,
-        "Domain": f"{_domain(functions)}; all others without unit",
+        "Domain": _domain(functions),
     }
     if entry.remark:
         head["Arguments"] = entry.remark
@@ -125,12 +125,14 @@ def closed_form_beside(entry: Entry) -> Entry | None:
 
 
 def _domain(functions: Sequence[Function]) -> str:
-    """Write the domains of the functions' scalar arguments as text."""
+    """Write the domains of the functions' scalar arguments as text, with their units if any."""
     parameters = {p.name: p for each in functions for p in each.parameters if p.size is None}
-    return ", ".join(
+    text = ", ".join(
         f"{p.name} in [{p.domain[0]:.6g}, {p.domain[1]:.6g}]{'' if p.unit == '1' else ' ' + p.unit}"
         for p in parameters.values()
     )
+    has_units = any(p.unit != "1" for p in parameters.values())
+    return f"{text}; all others without unit" if has_units else text
 
 
 def _values(trial: Trial, key: str, source: str | None) -> tuple[np.ndarray, str]:
