@@ -30,7 +30,7 @@ fresnel = Problem(
 )
 
 
-@fresnel.form(start=[4.0, 1.0])
+@fresnel.form
 def kulla_conty(eta, c0, c1):
     """(η − 1)/(c0 + c1 η)"""
     return (eta - 1) / (c0 + c1 * eta)

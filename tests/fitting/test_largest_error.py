@@ -65,6 +65,17 @@ def test_a_claim_below_the_true_error_is_refuted_with_its_point():
 
 
 @needs_compiler
+def test_what_the_closed_form_may_be_wrong_by_widens_both_bounds():
+    sharp, wide = (
+        certify_largest_error(FITTED, difference_code(FITTED, exact, inexact), 1.01, MIDDLE)
+        for inexact in (0.0, 1e-3)
+    )
+    # The search is the same; the sums are rounded.
+    assert wide.upper == pytest.approx(sharp.upper + 1e-3, rel=1e-12)
+    assert wide.lower == pytest.approx(sharp.lower - 1e-3, rel=1e-12)
+
+
+@needs_compiler
 def test_a_form_with_a_pole_is_not_proven():
     fitted = QUOTIENT.fitted(np.array([2.0, -0.5, 1.1, -1.3, 0.0]))
     found = certify_largest_error(fitted, difference_code(fitted, exact, 1e-15), 1.01, MIDDLE)
