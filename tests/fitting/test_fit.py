@@ -74,7 +74,8 @@ def test_a_fit_is_certified_and_states_its_errors(name, nodes, least):
     assert 0 < found.reference_error < 0.003 * found.off_grid.rms
 
 
-@pytest.mark.parametrize("nodes", [SMALL, pytest.param(65, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("nodes", [SMALL, 65])
 def test_the_fit_of_p_s_is_within_one_per_cent_of_what_any_coefficients_can_do(nodes):
     found = made("ps", nodes)
     require_stated_errors_off_the_grid(found)

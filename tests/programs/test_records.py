@@ -60,7 +60,14 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("key", "precision", "layout"), CASES)
+# CUDA's compiler takes seconds for each file.
+_SLOW = {"cuda": [pytest.mark.slow]}
+
+
+@pytest.mark.parametrize(
+    ("key", "precision", "layout"),
+    [pytest.param(*case, marks=_SLOW.get(case[0], [])) for case in CASES],
+)
 def test_a_structure_holds_what_the_first_function_computed(key, precision, layout):
     result = check(trial(Record("BlobState", layout, "k"), precision), key)
     if result.status == "not checked":

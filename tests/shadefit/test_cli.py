@@ -345,7 +345,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_work(capsys, tmp_
     assert file.read_text() == "kept"
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(value=st.floats(allow_nan=True, allow_infinity=True) | st.text(max_size=12))
 @example(value=math.nan)
 @example(value="1e999")
@@ -365,7 +365,7 @@ def test_any_density_is_evaluated_or_refused(capsys, value):
         assert not is_density(text)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(text=st.text(max_size=20).filter(lambda t: t not in NAMES))
 def test_any_other_table_name_is_refused(capsys, text):
     refuses(capsys, "export", "--", text)

@@ -54,6 +54,7 @@ def run(*arguments: str, encoding: str) -> str:
     return done.stdout.decode(encoding)
 
 
+@pytest.mark.slow
 def test_commands_print_in_an_old_encoding():
     text = run("evaluate", "q", "--density", "0.3", encoding="cp1252")
     assert text.startswith("Q = (1/pi) int_Omega exp(-d/(u·n)) (u·n) domega_u")
@@ -65,5 +66,6 @@ def test_an_exported_table_is_the_same_in_an_old_encoding():
     assert parse(run("export", "q", encoding="cp1252"), "q") == packaged_table("q")
 
 
+@pytest.mark.slow
 def test_exported_code_is_printed_in_an_old_encoding():
     assert "FuzzAveragePenetration" in run("export", "q", "--to", "python", encoding="cp1252")

@@ -212,6 +212,7 @@ def script(few_tables) -> str:
     return explorer.script()
 
 
+@pytest.mark.slow
 def test_the_script_cannot_end_its_element(script):
     assert "</" not in script
     assert script.startswith('"use strict";')

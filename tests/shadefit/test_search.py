@@ -57,6 +57,7 @@ def test_the_published_table_is_judged_where_the_candidates_are(tmp_path):
     assert whole.operations == part.operations
 
 
+@pytest.mark.slow
 def test_a_search_for_r_begins_with_the_forms_of_the_best_tables(tmp_path):
     wanted = Search(problem("r"), GOAL, tmp_path, lower={"alpha": 0.05})
     (form, *_) = wanted.candidates()

@@ -21,7 +21,10 @@ def shown(*arguments: str, width: int, **environment: str) -> tuple[str, list[st
     return session.output, screen(session.output)
 
 
-@pytest.mark.parametrize("width", [60, 80, 100])
+WIDTHS = [pytest.param(60, marks=pytest.mark.slow), 80, pytest.param(100, marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("width", WIDTHS)
 def test_the_numbers_of_a_comparison_are_whole(width):
     _, lines = shown("compare", "q", width=width)
     assert max(map(len, lines)) <= width
