@@ -210,9 +210,9 @@ def test_the_factored_error_of_p_s_is_the_error_of_the_form(name):
             )
             g = exactly(ps_error._geometry, ps_error._GEOMETRY, (alpha, half_f, half_u, psi), 6)
             light = g[:5]
-            s = exactly(ps_error._sizes, ps_error._SIZES, light, 2)
-            names = (*ps_error._SIZES, "sigma2", "q")
-            p, r, m = exactly(ps_error._factors, names, (*light, *s), 3)
+            s = exactly(ps_error.sizes, ps_error.SIZES, light, 2)
+            names = (*ps_error.SIZES, "sigma2", "q")
+            p, r, m = exactly(ps_error.factors, names, (*light, *s), 3)
             root = root_of(p, r, m)
             values = (alpha, *light, *s, p, r, m, root, root - p, g[5])
             found = exactly(error, ps_error._LIGHT, values, results)
