@@ -115,11 +115,9 @@ def _slabs(lower: float, upper: float, tolerance: float) -> tuple[list[float], l
     ends, slabs = [lower], []
     allowed = tolerance / r_bounds.lebesgue(BY_ALPHA)
     while ends[-1] < upper:
-        near, far = ends[-1], upper
-        for _ in range(60):
-            if r_bounds.over_alpha(*_widened(ends[-1], far, lower, upper), BY_ALPHA) <= tolerance:
-                break
-            far = near + 0.95 * (far - near)
+        far = upper
+        while r_bounds.over_alpha(*_widened(ends[-1], far, lower, upper), BY_ALPHA) > tolerance:
+            far = ends[-1] + 0.95 * (far - ends[-1])
         low, high = _widened(ends[-1], far, lower, upper)
         by_alpha, count = r_bounds.over_alpha(low, high, BY_ALPHA), 1
         while r_bounds.over_theta(low, _half(count), BY_THETA) > allowed:

@@ -70,9 +70,9 @@ def test_what_the_closed_form_may_be_wrong_by_widens_both_bounds():
         certify_largest_error(FITTED, difference_code(FITTED, exact, inexact), 1.01, MIDDLE)
         for inexact in (0.0, 1e-3)
     )
-    # The search is the same; the sums are rounded.
-    assert wide.upper == pytest.approx(sharp.upper + 1e-3, rel=1e-12)
-    assert wide.lower == pytest.approx(sharp.lower - 1e-3, rel=1e-12)
+    # Both climb to the same place. The second search leaves room for what is added.
+    assert wide.lower == pytest.approx(sharp.lower - 1e-3, rel=1e-9)
+    assert 1e-3 + sharp.lower <= wide.upper <= 1.01 * wide.lower
 
 
 @needs_compiler
