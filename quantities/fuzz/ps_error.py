@@ -97,10 +97,12 @@ def _geometry(alpha, half_f, half_u, cos_phi):
 
 
 def sizes(alpha2, kappa, a, b, c):
+    """Return σ_u² and σ_n²."""
     return 1 - kappa * (a * a), 1 - kappa * (b * b)
 
 
 def factors(alpha2, kappa, a, b, c, sigma2, q):
+    """Return p, r and m of the cubic λ (λ − p)(λ + r) = m (1 − λ²)."""
     s, t = jnp.sqrt(sigma2 * q), kappa * (a * b)
     return s - t, s + t, alpha2 * c
 

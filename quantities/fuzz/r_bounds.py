@@ -18,6 +18,7 @@ NODES = 16
 _RHO = np.geomspace(1.05, 12.0, 96)
 # The half axes of the ellipses: real and imaginary
 _REAL, _IMAGINARY = (_RHO + 1 / _RHO) / 2, (_RHO - 1 / _RHO) / 2
+_POWERS = _RHO[:, None] ** -np.arange(2.0 * NODES)
 _HALVINGS = 30
 
 
@@ -39,7 +40,7 @@ def over_alpha(lower: float, upper: float, nodes: int) -> float:
     return _interpolation((1 + tangent2) ** 1.25, nodes)
 
 
-def _complex_fibre(alpha: float, imaginary: np.ndarray) -> np.ndarray:
+def complex_fibre(alpha: float, imaginary: np.ndarray) -> np.ndarray:
     """Bound |1 − P_s| for a fibre whose direction has an imaginary part of this length."""
     q = (1 - alpha**2) * (imaginary / alpha) ** 2
     return np.where(q < 1, np.maximum(1 - q, 1e-300) ** -2.5, np.inf)
@@ -48,7 +49,7 @@ def _complex_fibre(alpha: float, imaginary: np.ndarray) -> np.ndarray:
 def over_theta(alpha: float, half: float, nodes: int) -> float:
     """Bound the error of interpolation of R in θf on an interval of length 2 `half`, from α on."""
     with np.errstate(over="ignore"):
-        return _interpolation(_complex_fibre(alpha, np.sinh(half * _IMAGINARY)), nodes)
+        return _interpolation(complex_fibre(alpha, np.sinh(half * _IMAGINARY)), nodes)
 
 
 def azimuths(alpha: float, sin_theta_f: float, tolerance: float) -> tuple[int, float]:
@@ -57,7 +58,7 @@ def azimuths(alpha: float, sin_theta_f: float, tolerance: float) -> tuple[int, f
     The number is a multiple of eight.
     """
     strip = np.arcsinh(np.geomspace(0.02, 0.999, 96) * alpha / max(sin_theta_f, 1e-3))
-    bound = 2 * _complex_fibre(alpha, min(sin_theta_f, 1.0) * np.sinh(strip))
+    bound = 2 * complex_fibre(alpha, min(sin_theta_f, 1.0) * np.sinh(strip))
 
     def left(count: int) -> float:
         return SAFETY * float(np.min(bound / np.expm1(np.minimum(2 * count * strip, 600))))
@@ -77,7 +78,9 @@ def rule() -> tuple[np.ndarray, np.ndarray]:
     """
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     nodes, weights = (nodes - nodes[::-1]) / 2, (weights + weights[::-1]) / 2
-    exact = [(Fraction(x), Fraction(w)) for x, w in zip(nodes.tolist(), weights.tolist())]
+    exact = [
+        (Fraction(x), Fraction(w)) for x, w in zip(nodes.tolist(), weights.tolist(), strict=True)
+    ]
     last, this = [Fraction(1)] * NODES, [x for x, _ in exact]
     errors = []
     for k in range(2 * NODES):
@@ -88,6 +91,53 @@ def rule() -> tuple[np.ndarray, np.ndarray]:
     return np.stack([nodes, weights]), np.array(errors)
 
 
+def imaginary_parts(
+    first: np.ndarray, last: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Bound the lengths of the imaginary parts of h and of u, for z = x + iy with cos θu = sin²z.
+
+    x is between `first` and `last`, and y at most the given one. The bounds are infinite where the
+    real part of sin²z might not be positive.
+    """
+    fine = (first > 0) & (last < np.pi) & (y < 1)
+    first, last = np.where(fine, first, 1.0), np.where(fine, last, 1.0)
+    y = np.where(fine, y, 0.0)
+    # notation: s = sin x, S = sinh y, c = sin²z with a real part of at least c_0, 2 turn ≥ |Im θu|
+    sine, cosine = np.sinh(y), np.cosh(y)
+    s_min, s_max = _sines(first, last)
+    cos_max = np.maximum(np.abs(np.cos(first)), np.abs(np.cos(last)))
+    twice = np.maximum(np.abs(np.sin(2 * first)), np.abs(np.sin(2 * last)))
+    around = ((first < np.pi / 4) & (last > np.pi / 4)) | (last > 3 * np.pi / 4)
+    twice = np.where(around, 1.0, twice)
+    c_0 = np.minimum(s_min**2, s_min**2 * (1 + 2 * sine**2) - sine**2)
+    fine &= (c_0 > 0) & (sine * cosine < 2)
+    c_0 = np.where(fine, c_0, 1.0)
+    under = np.where(fine, 1 + 2 * sine**2 - (sine / s_min) ** 2, 1.0)
+    along_m = sine * cosine * cos_max / np.sqrt(under) / (1 + c_0) ** 1.5
+    along_k = sine * cosine * twice / 2 / (1 + c_0) ** 1.5
+    c_max = s_max**2 + sine**2
+    turn = y * np.sqrt(c_max / np.sqrt(1 + 2 * c_0 + c_max**2))
+    of_h = np.hypot(np.cosh(turn) * along_m, along_k) + np.sinh(turn)
+    return np.where(fine, of_h, np.inf), np.where(fine, np.sinh(2 * turn), np.inf)
+
+
+def _sines(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the least and a largest value of sin x between two numbers in [0, π]."""
+    ends = np.sin(first), np.sin(last)
+    return np.minimum(*ends), np.where(last < np.pi / 2, ends[1], 1.0)
+
+
+def complex_light(alpha: float, first: np.ndarray, last: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Bound |1 − P_s| for the lights of `imaginary_parts`, for any fibre."""
+    ratio = (1 - alpha**2) / alpha**2
+    parts = imaginary_parts(first, last, y)
+    fine = np.isfinite(parts[0])
+    q_h, q_u = (ratio * np.where(fine, each, 0.0) ** 2 for each in parts)
+    fine &= (q_h < 1) & (q_u < 1)
+    q_h, q_u = np.where(fine, q_h, 0.0), np.where(fine, q_u, 0.0)
+    return np.where(fine, (1 - q_h) ** -2 * (1 - q_u) ** -0.5 / alpha**2, np.inf)
+
+
 def panel_error(alpha: float, lower: float, upper: float) -> float:
     """Bound what the rule leaves out of one panel in z, for any fibre.
 
@@ -96,37 +146,15 @@ def panel_error(alpha: float, lower: float, upper: float) -> float:
     """
     middle, half = (lower + upper) / 2, (upper - lower) / 2
     first, last, y = middle - half * _REAL, middle + half * _REAL, half * _IMAGINARY
-    fine = (first > 0) & (last < np.pi) & (y < 1)
-    first, last = np.where(fine, first, 1.0), np.where(fine, last, 1.0)
-    y = np.where(fine, y, 0.0)
-    # notation: x + iy = z, s = sin x, S = sinh y; c = c_r + i c_i = sin²z, and c_0 ≤ c_r
-    sine, cosine = np.sinh(y), np.cosh(y)
-    s_min = np.minimum(np.sin(first), np.sin(last))
-    s_max = np.where(last < np.pi / 2, np.sin(last), 1.0)
-    cos_max = np.maximum(np.abs(np.cos(first)), np.abs(np.cos(last)))
-    twice = np.maximum(np.abs(np.sin(2 * first)), np.abs(np.sin(2 * last)))
-    around = ((first < np.pi / 4) & (last > np.pi / 4)) | (last > 3 * np.pi / 4)
-    twice = np.where(around, 1.0, twice)
-    c_0 = np.minimum(s_min**2, s_min**2 * (1 + 2 * sine**2) - sine**2)
-    fine &= c_0 > 0
-    c_0 = np.maximum(c_0, 1e-300)
-    # The imaginary parts of the components of h in its own frame, of θu, and of h and u
-    under = np.maximum(1 + 2 * sine**2 - (sine / s_min) ** 2, 1e-300)
-    along_m = sine * cosine * cos_max / np.sqrt(under) / (1 + c_0) ** 1.5
-    along_k = sine * cosine * twice / 2 / (1 + c_0) ** 1.5
-    largest_c = s_max**2 + sine**2
-    turn = 2 * y * np.sqrt(largest_c / np.sqrt(1 + 2 * c_0 + largest_c**2))
-    of_h = np.hypot(np.cosh(turn / 2) * along_m, along_k) + np.sinh(turn / 2)
-    ratio = (1 - alpha**2) / alpha**2
-    q_h, q_u = ratio * of_h**2, ratio * np.sinh(turn) ** 2
-    fine &= (q_h < 1) & (q_u < 1)
-    q_h, q_u = np.where(fine, q_h, 0.0), np.where(fine, q_u, 0.0)
-    bound = (1 - q_h) ** -2 * (1 - q_u) ** -0.5 / alpha**2
-    bound *= 4 * (s_max**2 + sine**2) ** 1.5 * np.sqrt(cos_max**2 + sine**2)
+    bound = complex_light(alpha, first, last, y)
+    fine = np.isfinite(bound)
+    first, last, y = (np.where(fine, each, 1.0) for each in (first, last, y))
+    # |sin z|² = sin²x + sinh²y and |cos z|² = cos²x + sinh²y
+    sine2 = _sines(first, last)[1] ** 2 + np.sinh(y) ** 2
+    cosine2 = np.maximum(np.cos(first) ** 2, np.cos(last) ** 2) + np.sinh(y) ** 2
     _, defects = rule()
-    powers = _RHO[:, None] ** -np.arange(2.0 * NODES)
-    left = 64 / 15 * _RHO ** (-2.0 * NODES) / (1 - _RHO**-2) + 2 * powers @ defects
-    return SAFETY * float(np.min(np.where(fine, half * bound * left, np.inf)))
+    left = 64 / 15 * _RHO ** (-2.0 * NODES) / (1 - _RHO**-2) + 2 * _POWERS @ defects
+    return SAFETY * float(np.min(half * bound * 4 * sine2**1.5 * np.sqrt(cosine2) * left))
 
 
 @dataclass(frozen=True)

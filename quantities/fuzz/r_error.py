@@ -10,6 +10,7 @@ import numpy as np
 from fitting.form import FittedForm
 from fitting.proofs.largest_error import ErrorCode, printed
 from integrals.reference import box_of
+from programs.bounding.compiled import compiler_missing
 from quantities.fuzz.ps_error import KERNEL
 from quantities.fuzz.r_patches import Patches, patches
 
@@ -50,11 +51,14 @@ def patches_code(found: Patches) -> str:
 def error_code(fitted: FittedForm) -> ErrorCode | None:
     """Return the code of R̃ − R; None for a form whose domain contains α below `LEAST_ALPHA`.
 
-    This computes about ten thousand values of R.
+    This computes about ten thousand values of R. Raises ValueError without a C compiler.
     """
     alpha = fitted.axes[0]
     if alpha.lower < LEAST_ALPHA:
         return None
+    reason = compiler_missing()
+    if reason is not None:
+        raise ValueError(f"the proof needs a C compiler: {reason}")
     found = patches(alpha.lower, alpha.upper, TOLERANCE)
 
     def value(alpha, theta_f):

@@ -66,9 +66,7 @@ def _averages() -> Kernel:
     return compile_kernel(parts, 0, fast=True)
 
 
-def average(
-    alpha: np.ndarray, theta: np.ndarray, tolerance: float
-) -> tuple[float, float]:
+def average(alpha: np.ndarray, theta: np.ndarray, tolerance: float) -> tuple[float, float]:
     """Return a lower and an upper bound of R at a Chebyshev node, about 2 `tolerance` apart.
 
     Arguments: `alpha` and `theta` hold the middle and half the width of an interval, and the number
@@ -149,10 +147,12 @@ def _interpolant(values: np.ndarray) -> tuple[np.ndarray, float]:
     bases = [np.polynomial.chebyshev.chebvander(x, len(x) - 1) for x in nodes]
     sums = np.linalg.solve(bases[0], np.linalg.solve(bases[1], middle.T).T)
     to_powers = [
-        np.stack([
-            np.pad(p := np.polynomial.chebyshev.cheb2poly(row), (0, len(row) - len(p)))
-            for row in np.eye(len(x))
-        ])
+        np.stack(
+            [
+                np.pad(p := np.polynomial.chebyshev.cheb2poly(row), (0, len(row) - len(p)))
+                for row in np.eye(len(x))
+            ]
+        )
         for x in nodes
     ]
     powers = to_powers[0].T @ sums @ to_powers[1]
