@@ -15,11 +15,11 @@ import numpy as np
 SAFETY = 1.001
 # Nodes of the rule in each panel, a multiple of eight
 NODES = 16
-_RHO = np.geomspace(1.05, 12.0, 96)
+_RHO = np.geomspace(1.05, 12.0, 64)
 # The half axes of the ellipses: real and imaginary
 _REAL, _IMAGINARY = (_RHO + 1 / _RHO) / 2, (_RHO - 1 / _RHO) / 2
 _POWERS = _RHO[:, None] ** -np.arange(2.0 * NODES)
-_HALVINGS = 30
+_HALVINGS = 16
 
 
 def lebesgue(nodes: int) -> float:
