@@ -136,6 +136,7 @@ def certify_largest_error(
             code.box,
             ratio,
             claim=claim,
+            inexact=code.inexact,
             seeds=starts,
             threads=threads,
             progress=progress,

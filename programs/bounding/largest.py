@@ -82,6 +82,7 @@ def bound_largest(
     ratio: float,
     *,
     claim: float | None = None,
+    inexact: float = 0.0,
     seeds: np.ndarray | None = None,
     threads: int = 2,
     max_boxes: int = 10**10,
@@ -91,16 +92,19 @@ def bound_largest(
     """Bound the largest |error| on a box from both sides, the bounds at most `ratio` apart.
 
     Arguments: `box` (sides, 2); `ratio`, above 1; `claim`, a bound to prove or to refute, in place
-    of the best one; `seeds` (n, sides), points where the error may be large; `threads`, the number
-    of threads; `max_boxes`, after which the search gives up; `progress`, which is called several
-    times a second; `leaves` (m, 2, sides), an array for the boxes of the proof, which needs one
-    thread. Raises ValueError for a ratio that is not above 1, and RuntimeError if the processor
-    does not round upward.
+    of the best one; `inexact`, by how much the caller will move the bounds apart, for which the
+    search leaves up to half of the room between them; `seeds` (n, sides), points where the error
+    may be large; `threads`, the number of threads; `max_boxes`, after which the search gives up;
+    `progress`, which is called several times a second; `leaves` (m, 2, sides), an array for the
+    boxes of the proof, which needs one thread. Raises ValueError for a ratio that is not above 1,
+    and RuntimeError if the processor does not round upward.
     """
     if not ratio > 1:
         raise ValueError(f"upper ratio {ratio:g}: allowed is a number above 1")
     began = time.monotonic()
     lower, at = _best_seed(kernel, box, seeds)
+    if lower > 0:
+        ratio -= min(2.05 * inexact / lower, (ratio - 1) / 2)
     workers = [_Worker(kernel, box, ratio, claim) for _ in range(threads)]
     workers[0].found(lower, at)
     if leaves is not None:

@@ -21,11 +21,11 @@ from programs.program import interpret
 from programs.tracing.tracer import trace
 from quantities.fuzz.ps_forms import LEAST
 
-_ROOT = Path(__file__).parent / "kernel" / "cubic_root.h"
+KERNEL = Path(__file__).parent / "kernel"
 _MOST_COEFFICIENTS = 75
 _GEOMETRY = ("alpha", "half_f", "half_u", "cos_phi")
-_SIZES = ("alpha2", "kappa", "a", "b", "c")
-_LIGHT = ("alpha", *_SIZES, "sigma2", "q", "p", "r", "m", "lam", "gap", "sin_f")
+SIZES = ("alpha2", "kappa", "a", "b", "c")
+_LIGHT = ("alpha", *SIZES, "sigma2", "q", "p", "r", "m", "lam", "gap", "sin_f")
 
 # Values are cut to bounds that are proven for the whole domain: |a| ≤ 1, α² ≤ σ² ≤ 1, c ≤ r, p ≤ 1
 # (docs/range.md, docs/closed-form.md).
@@ -96,16 +96,18 @@ def _geometry(alpha, half_f, half_u, cos_phi):
     return alpha * alpha, (1 - alpha) * (1 + alpha), a, b, c, half_f * near_f
 
 
-def _sizes(alpha2, kappa, a, b, c):
+def sizes(alpha2, kappa, a, b, c):
+    """Return σ_u² and σ_n²."""
     return 1 - kappa * (a * a), 1 - kappa * (b * b)
 
 
-def _factors(alpha2, kappa, a, b, c, sigma2, q):
+def factors(alpha2, kappa, a, b, c, sigma2, q):
+    """Return p, r and m of the cubic λ (λ − p)(λ + r) = m (1 − λ²)."""
     s, t = jnp.sqrt(sigma2 * q), kappa * (a * b)
     return s - t, s + t, alpha2 * c
 
 
-def _complement(c, sigma2, r, m, root, gap):
+def complement(c, sigma2, r, m, root, gap):
     """Return 1 − P_s = √((λ + c)(λ + m/σ²)) / (λ + r + (λ − p) + m + m/λ²)."""
     root2 = root * root
     return jnp.sqrt((root + c) * (root + m / sigma2)) / (root + r + gap + m + m / root2)
@@ -117,7 +119,7 @@ def plain_error(fitted: FittedForm) -> Callable[..., tuple[Array]]:
 
     def error(alpha, alpha2, kappa, a, b, c, sigma2, q, p, r, m, root, gap, sin_f):
         value = along(material(alpha, b, sin_f), c, a)
-        return (value - 1 + _complement(c, sigma2, r, m, root, gap),)
+        return (value - 1 + complement(c, sigma2, r, m, root, gap),)
 
     return error
 
@@ -188,9 +190,9 @@ def error_code(fitted: FittedForm) -> ErrorCode:
         error, results = plain_error(fitted), 1
     parts = (
         printed("geometry", _GEOMETRY, _geometry, 6),
-        printed("sizes", _SIZES, _sizes, 2),
-        printed("factors", (*_SIZES, "sigma2", "q"), _factors, 3),
-        _ROOT.read_text("utf-8"),
+        printed("sizes", SIZES, sizes, 2),
+        printed("factors", (*SIZES, "sigma2", "q"), factors, 3),
+        (KERNEL / "cubic_root.h").read_text("utf-8"),
         printed("error", _LIGHT, error, results),
         f"#define RESULTS {results}\n#define LEAST {LEAST!r}",
         _ENTRY,

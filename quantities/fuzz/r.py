@@ -7,6 +7,7 @@ from integrals.rules.interval import gauss_legendre
 from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.fuzz.ps import PS
+from quantities.fuzz.r_error import error_code
 from quantities.fuzz.r_forms import VARIABLES, candidates, monomial_r
 from quantities.fuzz.supplement import RATIONAL_R
 from quantities.plot_hints import AxisHint, PlotHints
@@ -35,6 +36,7 @@ R = Problem(
     },
     candidates=lambda lower: candidates(lower["alpha"]),
     search_lower={"alpha": 0.15},
+    error_code=error_code,
     calling=CallingConvention(
         name="FuzzAveragePs",
         summary="R ({equation}); clamps to the domain.",

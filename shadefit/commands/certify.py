@@ -58,7 +58,7 @@ def certify(
     with stages() as progress:
         line = progress.begin("tables", total=len(entries))
         for entry in entries:
-            line.show(f"{entry.name}: compiling the search")
+            line.show(f"{entry.name}: preparing the search")
 
             def report(standing, name: str = entry.name) -> None:
                 line.show(_standing(name, standing))

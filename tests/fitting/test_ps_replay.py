@@ -22,8 +22,8 @@ def program_of(call, names: tuple[str, ...], results: int) -> Program:
 
 
 GEOMETRY = program_of(ps_error._geometry, ps_error._GEOMETRY, 6)
-SIZES = program_of(ps_error._sizes, ps_error._SIZES, 2)
-FACTORS = program_of(ps_error._factors, (*ps_error._SIZES, "sigma2", "q"), 3)
+SIZES = program_of(ps_error.sizes, ps_error.SIZES, 2)
+FACTORS = program_of(ps_error.factors, (*ps_error.SIZES, "sigma2", "q"), 3)
 
 
 def cut(jet: Jet, low, high) -> Jet:

@@ -1,0 +1,291 @@
+"""Forms and exact values in Arb's ball arithmetic, with slopes; no code of the program is used.
+
+A form is read from the steps of its table's `expression`. The exact values are written anew from
+docs/closed-form.md and docs/brdf.md.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from flint import arb, ctx
+
+ctx.prec = 80
+
+
+class Jet:
+    """Values on a box, the value at its centre, and the slopes in each variable.
+
+    `radii` are balls about zero that contain the distances from the centre. Without `slopes`, they
+    have no bound.
+    """
+
+    __slots__ = ("centre", "radii", "slopes", "value")
+
+    def __init__(self, value, centre, slopes, radii):
+        if slopes is not None:
+            near = centre
+            for slope, radius in zip(slopes, radii, strict=True):
+                near = near + slope * radius
+            if near.is_finite():
+                value = value.intersection(near) if value.is_finite() else near
+        self.value, self.centre, self.slopes, self.radii = value, centre, slopes, radii
+
+    def function(self, value, centre, slope) -> "Jet":
+        """Return a function of this jet from its values, and its derivative on the box."""
+        known = self.slopes is not None and slope.is_finite()
+        slopes = [slope * each for each in self.slopes] if known else None
+        return Jet(value, centre, slopes, self.radii)
+
+    def _with(self, other, value, centre, by_self, by_other) -> "Jet":
+        known = self.slopes is not None and other.slopes is not None
+        slopes = None
+        if known:
+            pairs = zip(self.slopes, other.slopes, strict=True)
+            slopes = [by_self * a + by_other * b for a, b in pairs]
+        return Jet(value, centre, slopes, self.radii)
+
+    def _lifted(self, other) -> "Jet":
+        if isinstance(other, Jet):
+            return other
+        number = arb(other)
+        return Jet(number, number, [arb(0)] * len(self.radii), self.radii)
+
+    def __add__(self, other):
+        b = self._lifted(other)
+        return self._with(b, self.value + b.value, self.centre + b.centre, 1, 1)
+
+    def __sub__(self, other):
+        b = self._lifted(other)
+        return self._with(b, self.value - b.value, self.centre - b.centre, 1, -1)
+
+    def __mul__(self, other):
+        b = self._lifted(other)
+        value = self.value**2 if b is self else self.value * b.value
+        return self._with(b, value, self.centre * b.centre, b.value, self.value)
+
+    def __truediv__(self, other):
+        b = self._lifted(other)
+        value = self.value / b.value
+        return self._with(b, value, self.centre / b.centre, 1 / b.value, -value / b.value)
+
+    def __rsub__(self, other):
+        return self._lifted(other) - self
+
+    def __rtruediv__(self, other):
+        return self._lifted(other) / self
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self):
+        return 0 - self
+
+    def sqrt(self):
+        value = rising(arb.sqrt, self.value)
+        return self.function(value, self.centre.sqrt(), 1 / (2 * value))
+
+    def exp(self):
+        value = rising(arb.exp, self.value)
+        return self.function(value, self.centre.exp(), value)
+
+    def log(self):
+        return self.function(rising(arb.log, self.value), self.centre.log(), 1 / self.value)
+
+    def cos(self):
+        return self.function(self.value.cos(), self.centre.cos(), -self.value.sin())
+
+    def sin(self):
+        return self.function(self.value.sin(), self.centre.sin(), self.value.cos())
+
+    def asin(self):
+        slope = 1 / (1 - self.value**2).sqrt()
+        return self.function(rising(arb.asin, self.value), self.centre.asin(), slope)
+
+    def cut(self, low, high) -> "Jet":
+        """Cut the values to bounds that are proven elsewhere."""
+        value = self.value.intersection(between(low, high))
+        return Jet(value, self.centre, self.slopes, self.radii)
+
+
+@dataclass(frozen=True)
+class Angle:
+    """An angle of which the cosine and the sine are known."""
+
+    cosine: object
+    sine: object
+
+    def cos(self):
+        return self.cosine
+
+    def sin(self):
+        return self.sine
+
+
+def between(low, high) -> arb:
+    return arb(low).union(arb(high))
+
+
+def rising(call: Callable, x: arb) -> arb:
+    """Return the values of a monotone function; those at numbers without a value are left out."""
+    ends = [call(x.lower()), call(x.upper())]
+    if not ends[0].is_finite() and call is arb.sqrt and x.contains(0):
+        ends[0] = arb(0)
+    return ends[0].union(ends[1])
+
+
+def larger(a, b):
+    if not isinstance(a, Jet):
+        a, b = b, a
+    b = a._lifted(b)
+    if a.value >= b.value:
+        return a
+    if b.value >= a.value:
+        return b
+    low = max(a.value.lower(), b.value.lower())
+    value = between(low, max(a.value.upper(), b.value.upper()))
+    slopes = None
+    if a.slopes is not None and b.slopes is not None:
+        slopes = [x.union(y) for x, y in zip(a.slopes, b.slopes, strict=True)]
+    return Jet(value, a.centre.max(b.centre), slopes, a.radii)
+
+
+OPERATIONS = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "neg": lambda a: -a,
+    "sqrt": lambda a: a.sqrt(),
+    "exp": lambda a: a.exp(),
+    "log": lambda a: a.log(),
+    "cos": lambda a: a.cos(),
+    "sin": lambda a: a.sin(),
+    "max": larger,
+}
+
+
+def variables(box) -> list[Jet]:
+    """Return a jet for each side of a box (sides, 2)."""
+    sides = [(arb(float(low)), arb(float(high))) for low, high in box]
+    centres = [((low + high) / 2).mid() for low, high in sides]
+    radii = [between(low - c, high - c) for (low, high), c in zip(sides, centres, strict=True)]
+    unit = [[arb(int(j == k)) for j in range(len(sides))] for k in range(len(sides))]
+    ends = (between(low, high) for low, high in sides)
+    return [Jet(v, c, g, radii) for v, c, g in zip(ends, centres, unit, strict=True)]
+
+
+def formula(table, arguments: Sequence):
+    """Evaluate the expression of a table; an argument is a number, a jet or an `Angle`."""
+    known = {each["name"]: x for each, x in zip(table["arguments"], arguments, strict=True)}
+    known |= {f"c{k}": arb(c) for k, c in enumerate(table["coefficients"])}
+    for k, (operation, *operands) in enumerate(table["expression"]["steps"]):
+        values = [known[x] if isinstance(x, str) else arb(x) for x in operands]
+        known[f"t{k}"] = OPERATIONS[operation](*values)
+    return known[table["expression"]["value"]]
+
+
+# Exact values
+
+
+def q_exact(density: Jet) -> Jet:
+    """Q = 2E₃(d), which falls with the slope −2E₂(d). Eₙ(0) = 1/(n − 1), and d ≥ 0."""
+
+    def integral(n: int):
+        return lambda x: x.expint(n) if x > 0 else arb(1) / (n - 1)
+
+    value, slope = (2 * rising(integral(n), density.value) for n in (3, 2))
+    return density.function(value, 2 * integral(3)(density.centre), -slope)
+
+
+def g_exact(density: Jet, cosine: Jet) -> Jet:
+    """G, which rises with d and falls with ν."""
+
+    def at(d, nu):
+        decay = (-d / nu).exp()
+        logarithms = (1 + 1 / nu).log() + (d + d / nu).expint(1) - decay * d.expint(1)
+        return 1 - decay * d.expint(2) - nu * logarithms
+
+    d, nu = density.value, cosine.value
+    value = at(d.lower(), nu.upper()).union(at(d.upper(), nu.lower()))
+    path = rising(lambda x: x, d) / nu
+    decay = rising(lambda x: (-x).exp(), path)
+    first, second = (rising(lambda x, n=n: x.expint(n), d) for n in (1, 2))
+    total = d + path
+    by_density = decay / nu * second
+    logarithms = (1 + 1 / nu).log() + rising(lambda x: x.expint(1), total) - decay * first
+    by_cosine = path * decay * (first - second / nu) - logarithms
+    by_cosine = by_cosine + (1 - rising(lambda x: (-x).exp(), total)) / (1 + nu)
+    pairs = zip(density.slopes, cosine.slopes, strict=True)
+    slopes = [by_density * a + by_cosine * b for a, b in pairs]
+    return Jet(value, at(density.centre, cosine.centre), slopes, density.radii)
+
+
+def velvet_exact(asymmetry: Jet) -> Jet:
+    """r(k), for x = −k near zero by the integral's power series, whose terms are positive."""
+    x = -asymmetry
+    if x.value < 0.3:
+        sines = [arb.pi(), arb(2)]
+        for m in range(2, 62):
+            sines.append(sines[m - 2] * (m - 1) / m)
+        # The terms left out: a_n ≤ 2 (n + 1), so that their sum is below 2 · 61 · 0.3⁶⁰/0.7².
+        total = x * 0 + arb(0, 1e-28)
+        for n in reversed(range(60)):
+            total = total * x + 2 / arb.pi() * (n + 1) * sines[n + 2]
+        return 1 / ((1 - x * x) * total)
+    s = ((1 - x) * (1 + x)).sqrt()
+    bracket = (2 * x.asin() + arb.pi()) * (2 * (x * x) - 1) + 2 * (x * s) + s * s * s * arb.pi()
+    return arb.pi() / 2 * (x * x) * s / bracket
+
+
+def cubic_root(p: Jet, r: Jet, m: Jet) -> Jet:
+    """The positive root λ of λ (λ − p)(λ + r) = m (1 − λ²); it rises with p and m, falls with r."""
+
+    def root(p, r, m, up: bool):
+        low, high = arb(0), arb(1)
+        for _ in range(60):
+            x = ((low + high) / 2).mid()
+            sign = x * (x - p) * (x + r) - m * (1 - x * x)
+            if sign > 0:
+                high = x
+            elif sign < 0:
+                low = x
+            else:
+                break
+        return high if up else low
+
+    ends = [
+        root(f.lower(), g.upper(), h.lower(), False) for f, g, h in ((p.value, r.value, m.value),)
+    ]
+    ends += [
+        root(f.upper(), g.lower(), h.upper(), True) for f, g, h in ((p.value, r.value, m.value),)
+    ]
+    value = between(*ends)
+    centre = between(*(root(p.centre, r.centre, m.centre, up) for up in (False, True)))
+    gap = value - p.value
+    slope = gap * (value + r.value) + value * (value + r.value) + value * gap + 2 * m.value * value
+    partials = value * (value + r.value) / slope, -value * gap / slope, (1 - value**2) / slope
+    slopes = None
+    if slope > 0 and all(each.slopes is not None for each in (p, r, m)):
+        triples = zip(p.slopes, r.slopes, m.slopes, strict=True)
+        slopes = [sum(a * b for a, b in zip(partials, each, strict=True)) for each in triples]
+    return Jet(value, centre, slopes, p.radii)
+
+
+def ps_exact(alpha: Jet, half_f: Jet, half_u: Jet, cos_phi: Jet) -> tuple[Jet, list]:
+    """P_s from α, the tangents of half of θf and of θu, and cos φ; and the arguments of a table."""
+    angles = []
+    for half in (half_f, half_u):
+        square = half * half
+        angles.append(Angle((1 - square) / (1 + square), 2 * half / (1 + square)))
+    arguments = [alpha, *angles, Angle(cos_phi, None)]
+    b, c = (each.cosine.cut(0, 1) for each in angles)
+    a = (angles[0].sine * angles[1].sine * cos_phi + b * c).cut(-1, 1)
+    kappa = (1 - alpha) * (1 + alpha)
+    sigma2, other2 = (1 - kappa * (x * x) for x in (a, b))
+    least = float(alpha.value.lower()) ** 2 * (1 - 1e-9)
+    sigma2, other2 = sigma2.cut(least, 1), other2.cut(least, 1)
+    t, s = kappa * (a * b), (sigma2 * other2).sqrt()
+    m = alpha * alpha * c
+    root = cubic_root(s - t, s + t, m).cut(least, 1)
+    root2 = root * root
+    above = root2 * ((root + c) * (root + m / sigma2)).sqrt()
+    return 1 - above / (2 * root * root2 + (m + 2 * t) * root2 + m), arguments
