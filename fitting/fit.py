@@ -13,6 +13,7 @@ from fitting.proofs.failing_denominator import failing_denominator
 from fitting.proofs.least_error import least_error
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
+from fitting.solvers.elsewhere import Counterexamples
 from fitting.solvers.exchange import Exchange, ScatteredFit
 from fitting.solvers.on_grid import GridFit, OnGrid, Progress
 from programs.bounding.branch_and_bound import Bounds
@@ -78,6 +79,7 @@ def fit(
     measure: str = "uniform",
     progress: Progress = lambda _: None,
     exchange: Exchange | None = None,
+    counterexamples: Counterexamples | None = None,
 ) -> Fit:
     """Fit a form to the exact values of its quantity.
 
@@ -90,6 +92,8 @@ def fit(
       has only one measure takes that one.
     * `progress`: a function that is called with a short text before each step.
     * `exchange`: the solver on scattered points; None for the default one.
+    * `counterexamples`: a search for larger errors than those at the points of a fit of the largest
+      error, such as `Problem.counterexamples()` returns.
 
     Raises ValueError for a number of nodes or a measure that is not allowed, for a fit with a
     denominator that is not proven to be positive, and for a bounded goal if the bounds are not
@@ -104,7 +108,7 @@ def fit(
             return _on_grid(form, found, nodes)
         start = np.asarray(found.coefficients).ravel()
     solver = exchange or Exchange()
-    found = solver.fit(form, goal, measure, start, progress)
+    found = solver.fit(form, goal, measure, start, progress, counterexamples)
     progress(f"{form.name}: errors and certificate")
     return _scattered(form, found, goal, measure)
 

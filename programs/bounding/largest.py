@@ -101,7 +101,7 @@ def bound_largest(
         raise ValueError(f"upper ratio {ratio:g}: allowed is a number above 1")
     began = time.monotonic()
     lower, at = _best_seed(kernel, box, seeds)
-    workers = [_Worker(kernel, box, ratio, claim) for _ in range(threads)]
+    workers = [Worker(kernel, box, ratio, claim) for _ in range(threads)]
     workers[0].found(lower, at)
     if leaves is not None:
         workers[0].keep(leaves)
@@ -112,7 +112,7 @@ def bound_largest(
             _share(workers)
             if claim is not None and workers[0].state.lower > claim:
                 break
-            list(pool.map(_Worker.run, [each for each in workers if each.state.depth]))
+            list(pool.map(Worker.run, [each for each in workers if each.state.depth]))
             boxes = sum(worker.state.boxes for worker in workers)
             failed = [worker for worker in workers if worker.failed]
             if any(worker.state.status == ROUNDING for worker in failed):
@@ -161,7 +161,7 @@ def bound_largest_slowly(
     )
 
 
-def _lower(worker: "_Worker") -> float:
+def _lower(worker: "Worker") -> float:
     return worker.state.lower
 
 
@@ -208,7 +208,7 @@ def _pieces(box: np.ndarray, count: int) -> Sequence[np.ndarray]:
     return slabs
 
 
-class _Worker:
+class Worker:
     """The stack of boxes of one thread, and its search structure."""
 
     def __init__(self, kernel: Kernel, box: np.ndarray, ratio: float, claim: float | None):
@@ -256,7 +256,7 @@ def _pointer(array: np.ndarray):
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
-def _share(workers: Sequence[_Worker]) -> None:
+def _share(workers: Sequence[Worker]) -> None:
     """Tell all threads the largest error that one has found, and give idle ones half a stack."""
     best = max(workers, key=_lower).state
     for worker in workers:

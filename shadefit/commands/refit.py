@@ -233,7 +233,13 @@ def _table(
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()
     goal = Goal(**{**own, **given})
-    made = fit(each.require_fitted().form, goal, measure=weight, progress=tell)
+    made = fit(
+        each.require_fitted().form,
+        goal,
+        measure=weight,
+        progress=tell,
+        counterexamples=each.problem.counterexamples(),
+    )
     options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
     command = f"shadefit refit {each.name}{options}"
     table = table_of(made, command, table.name, each.problem)
