@@ -11,6 +11,7 @@ from fitting.points.grids import Grid
 from fitting.points.sample import Sample
 from fitting.proofs.failing_denominator import failing_denominator
 from fitting.proofs.least_error import least_error
+from fitting.proofs.local_optimality import LocalOptimality, local_optimality
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
 from fitting.solvers.elsewhere import Counterexamples
@@ -46,6 +47,8 @@ class Fit:
     * `goal`: what the fit minimises, and its constraints.
     * `least_error`: the proven lower bound of the largest error that any coefficients of the form
       can have; None if there is no such proof.
+    * `local_optimality`: how much a small change of the coefficients could lower the largest error;
+      None for another goal, and if there is a `least_error`.
     * `range`: proven bounds of all values, which lie between 0 and 1 up to rounding; None if this
       is not proven.
     * `converged`: whether the solver reached what it looks for: for least squares a minimum, for
@@ -67,6 +70,7 @@ class Fit:
     certificate: DenominatorBound
     goal: Goal = LEAST_SQUARES
     least_error: float | None = None
+    local_optimality: LocalOptimality | None = None
     range: Bounds | None = None
     below: float | None = None
     converged: bool | None = None
@@ -179,9 +183,11 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
             "on its whole domain"
         )
     errors = form_values(fitted, sample.points) - sample.exact
-    least = None
+    least = local = None
     if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
         least = least_error(fitted, sample.points, sample.exact, sample.error)
+        if least is None:
+            local = local_optimality(fitted, sample.points, sample.exact, goal.bounded)
     return Fit(
         fitted=fitted,
         grid=sample,
@@ -194,6 +200,7 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
         certificate=certificate,
         goal=goal,
         least_error=least,
+        local_optimality=local,
         range=values,
         converged=found.converged,
     )

@@ -190,9 +190,10 @@ class Problem:
         return difference_code(fitted, exact, stated)
 
     def counterexamples(self) -> Counterexamples | None:
-        """Return a search for errors above a level that finds narrow ridges; None without compiler.
+        """Return a search for points with errors above a level; None without a compiler.
 
-        It finds nothing for a form whose error has no code.
+        It finds narrow ridges that a search by points misses, and nothing for a form whose error
+        has no code.
         """
         return counterexamples(self.code_of_error)
 

@@ -29,12 +29,13 @@ def counterexamples(
 
     def search(fitted: FittedForm, level: float) -> np.ndarray:
         none = np.empty((0, len(fitted.axes)))
-        code = code_of_error(fitted)
-        if code is None:
-            return none
         try:
+            code = code_of_error(fitted)
+            if code is None:
+                return none
             kernel = code.kernel()
-        except ToolchainError:
+        except (ValueError, ToolchainError):
+            # The closed form has operations that are not known, or the code does not compile.
             return none
         found = points_above(kernel, code.box, level + code.inexact, max_boxes=max_boxes)
         return np.clip(code.to_axes(found), *box_of(fitted.axes).T) if len(found) else none

@@ -45,7 +45,8 @@ class Elsewhere:
         points, exact = checking_points(self.form, SEED + 2)
         fine = self.size(points, exact)
         worst = points[np.argsort(-fine)[:count]]
-        if self.form.reference.sampling.climbs:
+        sampling = self.form.reference.sampling
+        if sampling.climbs or sampling.refined:
             starts, heights = np.concatenate([points, known.points]), np.concatenate([fine, sizes])
             worst = np.concatenate([worst, self._maxima(starts, heights)])
         added = sample_at(worst, self.form, self.goal, self.measure)
@@ -61,7 +62,9 @@ class Elsewhere:
         def size_at(points: np.ndarray) -> np.ndarray:
             return self.size(points, self.form.reference.values(points))
 
-        return worst_points(size_at, points, sizes, self.form.axes, self.seed)
+        sampling = self.form.reference.sampling
+        steps = None if sampling.climbs else sampling.refined
+        return worst_points(size_at, points, sizes, self.form.axes, self.seed, steps)
 
 
 def problem_at(

@@ -181,9 +181,9 @@ class Exchange:
             if search is not None and searches and (settled or turn == last):
                 searches -= 1
                 points = search(form.fitted(found), sizes.max() * (1 + self.above))
+                settled = not len(points) and bool(size <= sizes.max() * (1 + self.above))
                 if len(points):
-                    worst = elsewhere.uphill(points)
-                    settled, last = False, turn + self.exchanges
+                    worst, last = elsewhere.uphill(points), turn + self.exchanges
             if settled:
                 break
             sample = sample.extended(worst)

@@ -11,10 +11,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from programs.bounding.compiled import ROUNDING, Kernel
-from programs.bounding.largest import Worker
+from programs.bounding.largest import Worker, uphill
 
 # The box is divided into about this many cells. At most one point is found in each.
 _CELLS = 256
+# So many points, those with the largest errors, are moved to larger errors.
+_IMPROVED = 16
 # In each pass, every cell that is not done examines so many boxes.
 _PASSES = (1_000, 10_000, 100_000, 1_000_000)
 
@@ -25,9 +27,10 @@ def points_above(
     """Return points (m, sides) of a box (sides, 2) whose |error| is proven to be above a level.
 
     The box is divided into cells, and at most one point of each is returned: the first that is
-    found there. If there is none, either no error is above the level, or the search gave up after
-    `max_boxes` boxes or where the error is not bounded. The result does not depend on `threads`.
-    Raises RuntimeError if the processor does not round upward.
+    found there, or a worse one near it. The worst come first. If there is none, either no error is
+    above the level, or the search gave up after `max_boxes` boxes or where the error is not
+    bounded. The result does not depend on `threads`. Raises RuntimeError if the processor does not
+    round upward.
     """
     workers = []
     for cell in _cells(box):
@@ -42,9 +45,12 @@ def points_above(
             list(pool.map(lambda each, count=budget: _examine(each, count, level), some))
             if any(each.state.status == ROUNDING for each in some):
                 raise RuntimeError("the processor or the compiler does not round upward")
-            found = [each.state.at for each in workers if each.state.lower > level]
+            found = [each.state for each in workers if each.state.lower > level]
             if found:
-                return np.array([list(at) for at in found])
+                found.sort(key=lambda each: -each.lower)
+                some = [(each.lower, tuple(each.at)) for each in found]
+                some[:_IMPROVED] = [uphill(kernel, box, *each) for each in some[:_IMPROVED]]
+                return np.array([at for _, at in some])
     return np.empty((0, kernel.sides))
 
 

@@ -127,7 +127,7 @@ def bound_largest(
     upper = None
     if claim is None or best.lower <= claim:
         upper = max(best.lower, *(worker.state.reached for worker in workers))
-    lower, at = _climb(kernel, box, best.lower, tuple(best.at))
+    lower, at = uphill(kernel, box, best.lower, tuple(best.at))
     if upper is not None and lower > upper:
         raise RuntimeError(f"an error of {lower!r} at {at} is above the proven bound {upper!r}")
     return LargestValue(lower, at, upper, boxes)
@@ -181,7 +181,7 @@ def _best_seed(
     return best
 
 
-def _climb(
+def uphill(
     kernel: Kernel, box: np.ndarray, lower: float, at: tuple[float, ...]
 ) -> tuple[float, tuple[float, ...]]:
     """Return a larger |error| near a point and its place, by random steps that become shorter."""
