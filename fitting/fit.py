@@ -10,7 +10,7 @@ from fitting.goal import LEAST_SQUARES, Goal
 from fitting.points.grids import Grid
 from fitting.points.sample import Sample
 from fitting.proofs.failing_denominator import failing_denominator
-from fitting.proofs.least_error import least_error
+from fitting.proofs.least_error import least_error, rows_of
 from fitting.proofs.local_optimality import LocalOptimality, local_optimality
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
@@ -185,7 +185,7 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
     errors = form_values(fitted, sample.points) - sample.exact
     least = local = None
     if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
-        least = least_error(fitted, sample.points, sample.exact, sample.error)
+        least = _least_error(fitted, sample)
         if least is None:
             local = local_optimality(fitted, sample.points, sample.exact, goal.bounded)
     return Fit(
@@ -204,3 +204,14 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
         range=values,
         converged=found.converged,
     )
+
+
+def _least_error(fitted: FittedForm, sample: Sample) -> float | None:
+    """Return the lower bound of the largest error of any coefficients, by exact values for it."""
+    reference = fitted.reference
+    if not (reference.proof_options and fitted.form.has_least_error):
+        return least_error(fitted, sample.points, sample.exact, sample.error)
+    errors = form_values(fitted, sample.points) - sample.exact
+    points = sample.points[rows_of(sample.points, errors)]
+    exact = reference.estimates(points, for_proof=True)
+    return least_error(fitted, points, np.asarray(exact.value), float(np.max(exact.error)))

@@ -180,7 +180,9 @@ class Exchange:
             turn += 1
             if search is not None and searches and (settled or turn == last):
                 searches -= 1
-                points = search(form.fitted(found), sizes.max() * (1 + self.above))
+                # Of a bounded fit, the size may count more than the error.
+                largest = np.abs(problem.values(found)).max()
+                points = search(form.fitted(found), largest * (1 + self.above))
                 settled = not len(points) and bool(size <= sizes.max() * (1 + self.above))
                 if len(points):
                     worst, last = elsewhere.uphill(points), turn + self.exchanges

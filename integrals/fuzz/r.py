@@ -89,6 +89,7 @@ R = Reference(
     ),
     batch=64,
     options_at=_nodes_at,
+    proof_options={"nodes": _NODES_LOW_ALPHA},
     quadrature=quadrature,
     monte_carlo=monte_carlo,
 )
