@@ -46,6 +46,7 @@ def table_of(
             "boxes": fit.certificate.boxes,
             **_known("range", fit.range and [fit.range.lower, fit.range.upper]),
             **_known("least_error", fit.least_error),
+            **_known("local_optimality", fit.local_optimality and asdict(fit.local_optimality)),
             **_known("conservative_bound", fit.below),
         },
         **_known("uncertainty", None if owner is None or owner.topic else _uncertainty(fit)),

@@ -184,6 +184,18 @@ class LargestErrorRecord(Part):
         return self
 
 
+class LocalOptimalityRecord(Part):
+    """How much a small change of the coefficients could lower the largest error.
+
+    To first order, and at the points of the fit, no change that alters the values there by at most
+    the largest error (rms) lowers it by more than the fraction `decrease`. `extrema` is the number
+    of points that show this. It is computed in floating point (docs/certify.md).
+    """
+
+    decrease: Annotated[Number, Field(ge=0)]
+    extrema: Annotated[int, Field(ge=1)]
+
+
 class Certificates(Part):
     """What is proven on the whole domain, by branch and bound over a number of boxes.
 
@@ -192,13 +204,15 @@ class Certificates(Part):
     the proof; without a range this is not proven. No coefficients of the form have a largest error
     below `least_error`. If `conservative_bound` is positive, no value is above the exact one: it is
     a lower bound of a quantity that would be negative there (quantities/fuzz/velvet_form.py).
-    Without `largest_error`, the largest error is measured only.
+    Without `largest_error`, the largest error is measured only. `local_optimality` is for a form
+    that has no `least_error`. It is no proof.
     """
 
     denominator_bound: Positive | None = None
     boxes: Annotated[int, Field(ge=0)]
     range: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
     least_error: Positive | None = None
+    local_optimality: LocalOptimalityRecord | None = None
     conservative_bound: Number | None = None
     largest_error: LargestErrorRecord | None = None
 

@@ -10,9 +10,11 @@ from fitting.goal import LEAST_SQUARES, Goal
 from fitting.points.grids import Grid
 from fitting.points.sample import Sample
 from fitting.proofs.failing_denominator import failing_denominator
-from fitting.proofs.least_error import least_error
+from fitting.proofs.least_error import least_error, rows_of
+from fitting.proofs.local_optimality import LocalOptimality, local_optimality
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
+from fitting.solvers.elsewhere import Counterexamples
 from fitting.solvers.exchange import Exchange, ScatteredFit
 from fitting.solvers.on_grid import GridFit, OnGrid, Progress
 from programs.bounding.branch_and_bound import Bounds
@@ -45,6 +47,8 @@ class Fit:
     * `goal`: what the fit minimises, and its constraints.
     * `least_error`: the proven lower bound of the largest error that any coefficients of the form
       can have; None if there is no such proof.
+    * `local_optimality`: how much a small change of the coefficients could lower the largest error;
+      None for another goal, and if there is a `least_error`.
     * `range`: proven bounds of all values, which lie between 0 and 1 up to rounding; None if this
       is not proven.
     * `converged`: whether the solver reached what it looks for: for least squares a minimum, for
@@ -66,6 +70,7 @@ class Fit:
     certificate: DenominatorBound
     goal: Goal = LEAST_SQUARES
     least_error: float | None = None
+    local_optimality: LocalOptimality | None = None
     range: Bounds | None = None
     below: float | None = None
     converged: bool | None = None
@@ -78,6 +83,7 @@ def fit(
     measure: str = "uniform",
     progress: Progress = lambda _: None,
     exchange: Exchange | None = None,
+    counterexamples: Counterexamples | None = None,
 ) -> Fit:
     """Fit a form to the exact values of its quantity.
 
@@ -90,6 +96,8 @@ def fit(
       has only one measure takes that one.
     * `progress`: a function that is called with a short text before each step.
     * `exchange`: the solver on scattered points; None for the default one.
+    * `counterexamples`: a search for larger errors than those at the points of a fit of the largest
+      error, such as `Problem.counterexamples()` returns.
 
     Raises ValueError for a number of nodes or a measure that is not allowed, for a fit with a
     denominator that is not proven to be positive, and for a bounded goal if the bounds are not
@@ -104,7 +112,7 @@ def fit(
             return _on_grid(form, found, nodes)
         start = np.asarray(found.coefficients).ravel()
     solver = exchange or Exchange()
-    found = solver.fit(form, goal, measure, start, progress)
+    found = solver.fit(form, goal, measure, start, progress, counterexamples)
     progress(f"{form.name}: errors and certificate")
     return _scattered(form, found, goal, measure)
 
@@ -175,9 +183,11 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
             "on its whole domain"
         )
     errors = form_values(fitted, sample.points) - sample.exact
-    least = None
+    least = local = None
     if goal.norm == "linf" and goal.side == "both" and np.all(sample.scale == 1):
-        least = least_error(fitted, sample.points, sample.exact, sample.error)
+        least = _least_error(fitted, sample)
+        if least is None:
+            local = local_optimality(fitted, sample.points, sample.exact, goal.bounded)
     return Fit(
         fitted=fitted,
         grid=sample,
@@ -190,6 +200,18 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
         certificate=certificate,
         goal=goal,
         least_error=least,
+        local_optimality=local,
         range=values,
         converged=found.converged,
     )
+
+
+def _least_error(fitted: FittedForm, sample: Sample) -> float | None:
+    """Return the lower bound of the largest error of any coefficients, by exact values for it."""
+    reference = fitted.reference
+    if not (reference.proof_options and fitted.form.has_least_error):
+        return least_error(fitted, sample.points, sample.exact, sample.error)
+    errors = form_values(fitted, sample.points) - sample.exact
+    points = sample.points[rows_of(sample.points, errors)]
+    exact = reference.estimates(points, for_proof=True)
+    return least_error(fitted, points, np.asarray(exact.value), float(np.max(exact.error)))

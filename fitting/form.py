@@ -62,6 +62,9 @@ class Proofs:
       radicands and arguments of logarithms in the form's traced program.
     * `below`: takes the fitted form. If the number that it returns is positive, no value of the
       form is above the exact one. None: there is no such proof.
+    * `quotient`: takes the fitted form, and returns one with the same values that is a quotient of
+      linear functions of its coefficients, and whose form contains this one. A lower bound of its
+      largest error is one of this form's. None: there is no such form, or it is this one.
     * `first_split`: the number of pieces into which branch and bound divides the first axes before
       it begins.
     """
@@ -71,6 +74,7 @@ class Proofs:
     margins: Callable[..., tuple[Array, ...]] | None = None
     positive: Callable[..., Array] | None = None
     below: Callable[["FittedForm"], float] | None = None
+    quotient: Callable[["FittedForm"], "FittedForm"] | None = None
     first_split: tuple[int, ...] = ()
 
 

@@ -2,8 +2,8 @@
 
 import functools
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple
 
 import jax
@@ -138,6 +138,7 @@ class Reference:
     `sampling` says how many points forms are fitted on, checked at and judged by. `batch` is the
     number of points that `estimates` evaluates at once. `options_at` takes points (n, axes) and
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
+    `proof_options` are arguments for proofs, which need few but more exact values.
     `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
 
     A quantity that is only known by its `data` has no leg: it has values at the data's own points.
@@ -155,6 +156,7 @@ class Reference:
     monte_carlo: Leg | None = None
     batch: int = 8192
     options_at: Callable[[np.ndarray], dict[str, Any]] = lambda _: {}
+    proof_options: Mapping[str, Any] = field(default_factory=dict)
     codomain: tuple[float | int, float | int] = (0.0, 1.0)
     data: Data | None = None
 
@@ -188,9 +190,13 @@ class Reference:
         """Evaluate the most exact leg at one point."""
         return self.legs[self.best_leg](*arguments).value
 
-    def estimates(self, points: np.ndarray) -> Estimate:
-        """Evaluate the most exact leg at points (n, axes). Returns values and errors, (n,) each."""
-        options = tuple(self.options_at(points).items())
+    def estimates(self, points: np.ndarray, for_proof: bool = False) -> Estimate:
+        """Evaluate the most exact leg at points (n, axes). Returns values and errors, (n,) each.
+
+        `for_proof` asks for smaller errors, which may take longer.
+        """
+        more = self.proof_options if for_proof else {}
+        options = tuple({**self.options_at(points), **more}.items())
         return in_batches(functools.partial(_estimates, self, options), points, self.batch)
 
     def values(self, points: np.ndarray) -> np.ndarray:

@@ -32,7 +32,9 @@ class Sampling:
     the quantity is steep.
 
     If `climbs` is true, hill climbing starts at the worst points and looks for larger errors. This
-    is not worth its time for a quantity that is smooth and expensive. `measures` are the weights
+    is not worth its time for a quantity that is smooth and expensive. Of such a quantity, a fit of
+    the largest error still climbs, but tries at most `refined` points in a round; 0 stands for no
+    climbing. `measures` are the weights
     that a fit may choose from, by name. `verified` is the largest number of points (not a
     logarithm) at which exported code is compared with exact values. None means no limit.
     """
@@ -41,6 +43,7 @@ class Sampling:
     checked: int
     judged: int
     climbs: bool = True
+    refined: int = 0
     extra: Callable[[np.ndarray], np.ndarray] | None = None
     measures: Mapping[str, Measure] = field(default_factory=lambda: {"uniform": Measure()})
     verified: int | None = None

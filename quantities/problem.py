@@ -11,7 +11,9 @@ from jax import Array
 
 from fitting.form import FittedForm, Form
 from fitting.points.scattered import scattered_points
+from fitting.proofs.counterexamples import counterexamples
 from fitting.proofs.largest_error import ErrorCode, difference_code
+from fitting.solvers.elsewhere import Counterexamples
 from integrals.reference import Axis, Reference, restricted
 from programs.functions import Function, Record
 from quantities.calling_convention import CallingConvention
@@ -186,6 +188,14 @@ class Problem:
         points = scattered_points(self.reference, fitted.axes, _PROBES, _PROBES)
         stated = float(np.max(self.reference.estimates(points).error))
         return difference_code(fitted, exact, stated)
+
+    def counterexamples(self) -> Counterexamples | None:
+        """Return a search for points with errors above a level; None without a compiler.
+
+        It finds narrow ridges that a search by points misses, and nothing for a form whose error
+        has no code.
+        """
+        return counterexamples(self.code_of_error)
 
     def has_form(self, name: str, shape: dict[str, Any] | None) -> bool:
         """Return whether there is a form, or for a shape a family, with this name."""

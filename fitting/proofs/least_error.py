@@ -1,5 +1,7 @@
 """A lower bound of the largest error that any coefficients of a form can have."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.optimize import linprog
 
@@ -11,6 +13,8 @@ from fitting.solvers.residuals import Residuals, largest_of, residuals
 LEVELS = (0.99999, 0.9999, 0.999, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5)
 # The linear program uses this many points with the largest errors, and about as many evenly chosen.
 ROWS = 500
+# Between a level that is shown to be impossible and one that is not, so many more are tried.
+_HALVINGS = 4
 
 
 def least_error(
@@ -23,11 +27,15 @@ def least_error(
     is a quotient N/D of linear functions with D > 0, its error is at most t where
     |N − exact·D| ≤ t·D, which is linear in the coefficients. The dual solution of a linear program
     is a combination of these inequalities that no coefficients satisfy; then t is a lower bound.
+    Another form may be contained in such a quotient (`Proofs.quotient`), whose bound is its own.
     Returns None if no bound is found, or if the form is no such quotient.
     """
     form = fitted.form
     if not (form.has_least_error and form.size):
         return None
+    if form.proofs.quotient is not None:
+        fitted = form.proofs.quotient(fitted)
+        form = fitted.form
     problem = residuals(
         form, points, exact, np.ones(len(exact)), np.full(form.size, True), np.zeros(form.size)
     )
@@ -35,16 +43,36 @@ def least_error(
         return None
     z = fitted.constants.ravel()
     error = problem.values(z)
-    some = largest_of(np.abs(error), ROWS)
-    some[:: max(len(points) // ROWS, 1)] = True
     attained = float(np.max(np.abs(error)))
+    rows = rows_of(points, error)
+    higher = LEVELS[0]
     for level in LEVELS if attained > 0 else ():
-        bound = level * attained - error_of_exact
-        if bound <= 0:
+        if level * attained <= error_of_exact:
             return None
-        if _is_refuted(problem, z, error, np.nonzero(some)[0], level):
-            return bound
+        if _is_refuted(problem, z, error, rows, level):
+            best = _raised(level, higher, lambda some: _is_refuted(problem, z, error, rows, some))
+            return best * attained - error_of_exact
+        higher = level
     return None
+
+
+def _raised(level: float, higher: float, is_refuted: Callable[[float], bool]) -> float:
+    """Return a refuted level between `level`, which is refuted, and `higher`, which is not."""
+    for _ in range(_HALVINGS if higher > level else 0):
+        middle = (level + higher) / 2
+        level, higher = (middle, higher) if is_refuted(middle) else (level, middle)
+    return level
+
+
+def rows_of(points: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Return the indices of points (n, axes) for a linear program: the worst, and even ones.
+
+    A point that occurs several times counts once.
+    """
+    _, first = np.unique(points, axis=0, return_index=True)
+    some = largest_of(np.abs(error[first]), ROWS)
+    some[:: max(len(first) // ROWS, 1)] = True
+    return np.sort(first[some])
 
 
 def _is_refuted(problem: Residuals, z, error, rows, level: float) -> bool:

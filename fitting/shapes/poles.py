@@ -22,6 +22,27 @@ def poles_value(coefficients, terms: int, poles: int, x: Array) -> Array:
     return functools.reduce(jnp.add, map(jnp.asarray, parts))
 
 
+def quotient_of_poles(coefficients, terms: int, poles: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the same function as a quotient: the coefficients of both polynomials in x.
+
+    They are in rising powers. The highest one of the denominator is 1.
+    """
+    c = np.asarray(coefficients, float)
+    factors = [np.array([b, 1.0]) for b in c[terms + 1 :: 2]]
+
+    def product(some) -> np.ndarray:
+        return functools.reduce(np.convolve, some, np.ones(1))
+
+    below = product(factors)
+    above = np.zeros(terms + poles)
+    if terms:
+        above += np.convolve(c[:terms], below)
+    for k in range(poles):
+        rest = product(factors[:k] + factors[k + 1 :])
+        above[: len(rest)] += c[terms + 2 * k] * rest
+    return above, below
+
+
 def least_offset(coefficients, terms: int, poles: int) -> Array:
     """Return the least of all bₖ and 1. If it is positive, no pole x = −bₖ is at x ≥ 0."""
     offsets = [coefficients[terms + 2 * k + 1] for k in range(poles)]

@@ -3,7 +3,8 @@
 1. Least squares: the best result of several starts is kept.
 2. If the goal's norm is 'linf', linear programs minimise the largest error at the points of the
    sample. The points outside the sample that have the largest errors are then added to it, and the
-   step is repeated. This is called exchange.
+   step is repeated. This is called exchange. If no such point is found any more, a search by bounds
+   on boxes looks for further ones, where there is one for the form (`Counterexamples`).
 3. If the goal has a rounding, the coefficients are rounded in groups, those whose rounding changes
    the values most first. After each group, the coefficients that are not yet rounded are refitted.
 """
@@ -14,12 +15,11 @@ import numpy as np
 
 from fitting.form import Form
 from fitting.goal import Goal
-from fitting.points.sample import SEED, Sample, sample_at, sample_of, scale_at
-from fitting.points.scattered import checking_points
-from fitting.solvers.extrema import worst_points
+from fitting.points.sample import SEED, Sample, sample_of
+from fitting.solvers.elsewhere import Counterexamples, Elsewhere, problem_at
 from fitting.solvers.minimax import Minimax
 from fitting.solvers.on_grid import Progress
-from fitting.solvers.residuals import Residuals, badness, limits, residuals
+from fitting.solvers.residuals import Residuals, badness, limits
 from fitting.solvers.scattered_squares import fit_squares
 from fitting.solvers.starts import quotient_starts
 
@@ -57,6 +57,8 @@ class Exchange:
       the largest errors outside the sample are added to it, and those that a search finds. The
       exchange ends when their largest error exceeds that of the sample by at most the fraction
       `settled`.
+    * `searches`, `above`: if there is a search by bounds, it looks at most `searches` times for
+      errors that exceed that of the sample by more than the fraction `above`.
     * `turns`: the number of groups in which the coefficients are rounded.
     * `minimax`: minimises the largest error. `minimax_of_rounding` does so after each group is
       rounded.
@@ -69,17 +71,27 @@ class Exchange:
     exchanges: int = 12
     exchanged: int = 300
     settled: float = 5e-5
+    searches: int = 8
+    above: float = 5e-4
     turns: int = 4
     minimax: Minimax = field(default_factory=Minimax)
     minimax_of_rounding: Minimax = field(default_factory=lambda: Minimax(programs=20))
 
     def fit(
-        self, form: Form, goal: Goal, measure: str, start: np.ndarray | None, progress: Progress
+        self,
+        form: Form,
+        goal: Goal,
+        measure: str,
+        start: np.ndarray | None,
+        progress: Progress,
+        counterexamples: Counterexamples | None = None,
     ) -> ScatteredFit:
         """Fit a form to the points of its quantity.
 
         `start`, flat coefficients, replaces the form's own starts. `progress` is called with a text
-        before each step. Raises ValueError if no start leads to a form without poles.
+        before each step. `counterexamples` searches for larger errors than those at the points; it
+        is used if errors are neither weighted nor one-sided. Raises ValueError if no start leads to
+        a form without poles.
         """
         progress(f"exact {form.reference.symbol} where {form.name} is fitted")
         sample = sample_of(form, goal, measure)
@@ -87,11 +99,14 @@ class Exchange:
         found, converged, words = self.least_squares(form, sample, goal, start)
         if goal.norm == "linf":
             progress(f"{form.name}: least largest error")
-            found, sample, converged = self._least_largest(form, sample, goal, measure, found)
+            search = counterexamples if _is_plain(goal, sample) else None
+            found, sample, converged = self._least_largest(
+                form, sample, goal, measure, found, search
+            )
             words = f"{SQUARES}; linear programs (HiGHS)"
             if not converged:
                 words += f"; the largest error did not settle in {self.exchanges} exchanges"
-        if _runs_away(_problem(form, sample, goal), found):
+        if _runs_away(problem_at(form, sample, goal), found):
             converged = False
             words += "; coefficients grow without limit: let another term of the denominator be 1"
         if goal.rounding != "none":
@@ -108,7 +123,7 @@ class Exchange:
         those of `quotient_starts`. Raises ValueError if there is no start, and if no start leads to
         a form without poles.
         """
-        problem = _problem(form, sample, goal)
+        problem = problem_at(form, sample, goal)
         starts = list(form.starts) if start is None else [start]
         linear = problem.parts is not None and not np.any(problem.parts.b)
         if start is None and (linear or not starts):
@@ -136,7 +151,13 @@ class Exchange:
         return found.z, found.converged, f"{words}; {found.words}" if found.words else words
 
     def _least_largest(
-        self, form: Form, sample: Sample, goal: Goal, measure: str, start: np.ndarray
+        self,
+        form: Form,
+        sample: Sample,
+        goal: Goal,
+        measure: str,
+        start: np.ndarray,
+        search: Counterexamples | None,
     ) -> tuple[np.ndarray, Sample, bool]:
         """Minimise the largest error, adding points with larger errors to the sample in turn.
 
@@ -145,46 +166,34 @@ class Exchange:
         """
         if form.reference.data is not None:
             # Data have no values elsewhere: the rows that are held out judge the fit.
-            return self.minimax(_problem(form, sample, goal), start, goal.side), sample, True
+            return self.minimax(problem_at(form, sample, goal), start, goal.side), sample, True
         every, found, settled = [start], start, not len(start)
-        for turn in range(self.exchanges if len(start) else 0):
-            problem = _problem(form, sample, goal)
+        searches, turn, last = self.searches, 0, self.exchanges
+        while turn < last and len(start):
+            problem = problem_at(form, sample, goal)
             found = self.minimax(problem, found, goal.side)
             every.append(found)
-            worst, size = self._worst_elsewhere(form, found, goal, measure, SEED + 2 + turn)
-            known = badness(problem.values(found), *limits(problem, goal.side)).max()
-            settled = bool(size <= known * (1 + self.settled))
+            sizes = badness(problem.values(found), *limits(problem, goal.side))
+            elsewhere = Elsewhere(form, found, goal, measure, SEED + 2 + turn)
+            worst, size = elsewhere.worst(self.exchanged, sample, sizes)
+            settled = bool(size <= sizes.max() * (1 + self.settled))
+            turn += 1
+            if search is not None and searches and (settled or turn == last):
+                searches -= 1
+                # Of a bounded fit, the size may count more than the error.
+                largest = np.abs(problem.values(found)).max()
+                points = search(form.fitted(found), largest * (1 + self.above))
+                settled = not len(points) and bool(size <= sizes.max() * (1 + self.above))
+                if len(points):
+                    worst, last = elsewhere.uphill(points), turn + self.exchanges
             if settled:
                 break
             sample = sample.extended(worst)
-        problem = _problem(form, sample, goal)
+        problem = problem_at(form, sample, goal)
         good = [z for z in every if problem.is_good(z)] or [found]
         allowed = limits(problem, goal.side)
         best = min(good, key=lambda z: badness(problem.values(z), *allowed).max(initial=0.0))
         return best, sample, settled
-
-    def _worst_elsewhere(self, form: Form, found: np.ndarray, goal: Goal, measure: str, seed: int):
-        """Return the points outside the sample with the largest errors, and the largest error.
-
-        They come from a finer set of points, and from a search for local maxima that starts there.
-        An error that the goal does not allow counts as much larger (`badness`).
-        """
-
-        def size(points: np.ndarray, exact: np.ndarray) -> np.ndarray:
-            scale = scale_at(points, exact, form, goal, measure)
-            problem = _problem(form, Sample(points, exact, 0.0, scale), goal)
-            return badness(problem.values(found), *limits(problem, goal.side))
-
-        def size_at(points: np.ndarray) -> np.ndarray:
-            return size(points, form.reference.values(points))
-
-        points, exact = checking_points(form, SEED + 2)
-        sizes = size(points, exact)
-        worst = points[np.argsort(-sizes)[: self.exchanged]]
-        if form.reference.sampling.climbs:
-            worst = np.concatenate([worst, worst_points(size_at, points, sizes, form.axes, seed)])
-        added = sample_at(worst, form, goal, measure)
-        return added, float(size(added.points, added.exact).max())
 
     def _rounded(self, form: Form, sample: Sample, goal: Goal, found: np.ndarray) -> np.ndarray:
         """Round the coefficients in groups. After each, refit those that are not yet rounded.
@@ -192,7 +201,7 @@ class Exchange:
         Raises ValueError for a coefficient that is too large for the precision.
         """
         dtype = PRECISIONS[goal.rounding]
-        slopes = _problem(form, sample, goal).slopes(found, np.arange(len(sample.exact)))
+        slopes = problem_at(form, sample, goal).slopes(found, np.arange(len(sample.exact)))
         # The coefficients whose rounding may change the values most come first.
         order = np.argsort(-np.abs(found) * np.max(np.abs(slopes), axis=0, initial=0.0))
         free, found = np.full(len(found), True), found.copy()
@@ -201,7 +210,7 @@ class Exchange:
             found[turn] = found[turn].astype(dtype).astype(float)
             free[turn] = False
             if free.any():
-                problem = _problem(form, sample, goal, free, found)
+                problem = problem_at(form, sample, goal, free, found)
                 found[free] = self._refitted(problem, found[free], goal)
         return found
 
@@ -212,17 +221,9 @@ class Exchange:
         return start - np.linalg.lstsq(slopes, problem.values(start), rcond=None)[0]
 
 
-def _problem(
-    form: Form,
-    sample: Sample,
-    goal: Goal,
-    free: np.ndarray | None = None,
-    fixed: np.ndarray | None = None,
-) -> Residuals:
-    """Return the residuals as functions of the free coefficients; by default all are free."""
-    free = np.full(form.size, True) if free is None else free.copy()
-    fixed = np.zeros(form.size) if fixed is None else fixed.copy()
-    return residuals(form, sample.points, sample.exact, sample.scale, free, fixed, goal.bounded)
+def _is_plain(goal: Goal, sample: Sample) -> bool:
+    """Whether the fit minimises the largest error, neither weighted nor one-sided."""
+    return goal.norm == "linf" and goal.side == "both" and bool(np.all(sample.scale == 1))
 
 
 def _runs_away(problem: Residuals, z: np.ndarray) -> bool:

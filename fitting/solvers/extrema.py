@@ -1,6 +1,7 @@
 """Where the error of a form is largest: a search for its local maxima."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,17 +25,26 @@ _climb_on_plane = HillClimbing(cells=12)
 
 
 def worst_points(
-    size: Size, points: np.ndarray, sizes: np.ndarray, axes: tuple[Axis, ...], seed: int
+    size: Size,
+    points: np.ndarray,
+    sizes: np.ndarray,
+    axes: tuple[Axis, ...],
+    seed: int,
+    steps: int | None = None,
 ) -> np.ndarray:
     """Return points (m, axes) at local maxima of an absolute error.
 
     `size` maps points (k, axes) to absolute errors (k,); `sizes` (n,) are its values at `points`
     (n, axes). Over one axis all maxima are found that a fine, adaptive set of points shows. Over
-    more axes hill climbing starts at the worst point of each cell of the domain.
+    more axes hill climbing starts at the worst point of each cell of the domain. `steps` limits the
+    points of a round of it; None for the usual limit.
     """
     if len(axes) == 1:
         return _on_line(size, axes[0])[:, None]
-    return (_climb_on_plane if len(axes) == 2 else climb)(size, points, sizes, axes, seed)
+    search = _climb_on_plane if len(axes) == 2 else climb
+    if steps is not None:
+        search = replace(search, steps=steps)
+    return search(size, points, sizes, axes, seed)
 
 
 def _on_line(size: Size, axis: Axis) -> np.ndarray:

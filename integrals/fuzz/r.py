@@ -83,10 +83,13 @@ R = Reference(
     meaning="cosine-weighted average of P_s over the hemisphere of lights",
     definition="(1/π) ∫_Ω P_s(u) (u·n) dω_u",
     axes=AXES,
-    # Few points and no hill climbing: R is smooth, and each value costs a quadrature.
-    sampling=Sampling(fitted=11, checked=10, judged=12, climbs=False, verified=1 << 12),
+    # Few points and little hill climbing: R is smooth, and each value costs a quadrature.
+    sampling=Sampling(
+        fitted=11, checked=10, judged=12, climbs=False, refined=1 << 10, verified=1 << 12
+    ),
     batch=64,
     options_at=_nodes_at,
+    proof_options={"nodes": _NODES_LOW_ALPHA},
     quadrature=quadrature,
     monte_carlo=monte_carlo,
 )

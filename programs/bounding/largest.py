@@ -105,7 +105,7 @@ def bound_largest(
     lower, at = _best_seed(kernel, box, seeds)
     if lower > 0:
         ratio -= min(2.05 * inexact / lower, (ratio - 1) / 2)
-    workers = [_Worker(kernel, box, ratio, claim) for _ in range(threads)]
+    workers = [Worker(kernel, box, ratio, claim) for _ in range(threads)]
     workers[0].found(lower, at)
     if leaves is not None:
         workers[0].keep(leaves)
@@ -116,7 +116,7 @@ def bound_largest(
             _share(workers)
             if claim is not None and workers[0].state.lower > claim:
                 break
-            list(pool.map(_Worker.run, [each for each in workers if each.state.depth]))
+            list(pool.map(Worker.run, [each for each in workers if each.state.depth]))
             boxes = sum(worker.state.boxes for worker in workers)
             failed = [worker for worker in workers if worker.failed]
             if any(worker.state.status == ROUNDING for worker in failed):
@@ -131,7 +131,7 @@ def bound_largest(
     upper = None
     if claim is None or best.lower <= claim:
         upper = max(best.lower, *(worker.state.reached for worker in workers))
-    lower, at = _climb(kernel, box, best.lower, tuple(best.at))
+    lower, at = uphill(kernel, box, best.lower, tuple(best.at))
     if upper is not None and lower > upper:
         raise RuntimeError(f"an error of {lower!r} at {at} is above the proven bound {upper!r}")
     return LargestValue(lower, at, upper, boxes)
@@ -165,7 +165,7 @@ def bound_largest_slowly(
     )
 
 
-def _lower(worker: "_Worker") -> float:
+def _lower(worker: "Worker") -> float:
     return worker.state.lower
 
 
@@ -185,7 +185,7 @@ def _best_seed(
     return best
 
 
-def _climb(
+def uphill(
     kernel: Kernel, box: np.ndarray, lower: float, at: tuple[float, ...]
 ) -> tuple[float, tuple[float, ...]]:
     """Return a larger |error| near a point and its place, by random steps that become shorter."""
@@ -212,7 +212,7 @@ def _pieces(box: np.ndarray, count: int) -> Sequence[np.ndarray]:
     return slabs
 
 
-class _Worker:
+class Worker:
     """The stack of boxes of one thread, and its search structure."""
 
     def __init__(self, kernel: Kernel, box: np.ndarray, ratio: float, claim: float | None):
@@ -260,7 +260,7 @@ def _pointer(array: np.ndarray):
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
-def _share(workers: Sequence[_Worker]) -> None:
+def _share(workers: Sequence[Worker]) -> None:
     """Tell all threads the largest error that one has found, and give idle ones half a stack."""
     best = max(workers, key=_lower).state
     for worker in workers:

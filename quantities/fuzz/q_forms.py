@@ -9,10 +9,17 @@ import itertools
 from collections.abc import Iterator
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
-from fitting.form import Form, Proofs, Stage
-from fitting.shapes.poles import least_offset, pole_names, pole_starts, poles_value
+from fitting.form import FittedForm, Form, Proofs, Stage
+from fitting.shapes.poles import (
+    least_offset,
+    pole_names,
+    pole_starts,
+    poles_value,
+    quotient_of_poles,
+)
 from integrals import Q
 from integrals.reference import restricted
 from shading.types import Scalar
@@ -21,6 +28,10 @@ AXES = restricted(Q.axes, density=(0.0, 0.5))
 # The logarithm is that of max(d, this), so that it is finite at d = 0. Its factor d² makes the
 # difference far smaller than rounding.
 LEAST_DENSITY = 1e-7
+
+# Poles are farther than this from x = 0, so that no precision of shaders turns one into a division
+# by zero.
+_LEAST_OFFSET = 5e-4
 
 # The equation of each structure. r is the polynomial with the poles, a function of d or of √d.
 STRUCTURES = {
@@ -63,8 +74,38 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
         stages=(Stage(value),),
         starts=pole_starts(terms, poles),
         shape={"structure": structure, "terms": terms, "poles": poles},
-        proofs=Proofs(positive=lambda c, _: least_offset(c, terms, poles)),
+        proofs=Proofs(
+            positive=lambda c, _: least_offset(c, terms, poles) - _LEAST_OFFSET,
+            quotient=functools.partial(_as_quotient, structure, terms, poles) if poles else None,
+        ),
     )
+
+
+def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> FittedForm:
+    """Return the same values with r as a quotient of polynomials, which any other one may replace.
+
+    The coefficients are those of the numerator, in rising powers, then those of the denominator but
+    for the highest power, whose coefficient is 1.
+    """
+    above, below = quotient_of_poles(fitted.constants, terms, poles)
+    split = len(above)
+
+    def value(c, density: Scalar) -> Array:
+        def r(x):
+            lower = sum(c[split + k] * x**k for k in range(poles))
+            return sum(c[k] * x**k for k in range(split)) / (x**poles + lower)
+
+        return _surround(structure, jnp.asarray(density), r)
+
+    form = Form(
+        name="quotient-q",
+        equation=f"Q = {STRUCTURES[structure]}, r a quotient of polynomials",
+        reference=Q,
+        axes=AXES,
+        coefficient_names=[f"n{k}" for k in range(split)] + [f"d{k}" for k in range(poles)],
+        stages=(Stage(value),),
+    )
+    return form.fitted(np.concatenate([above, below[:-1]]))
 
 
 def candidates() -> Iterator[Form]:

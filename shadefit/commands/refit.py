@@ -227,13 +227,20 @@ def _table(
         on_grid = "" if nodes is None else f" --grid {nodes}"
         weighted = f" --weight {weight}" if owner.topic else ""
         command = f"shadefit refit{file} {owner.name}{other}{on_grid}{weighted}{_options(given)}"
-        made = fit(form, Goal(**given), nodes, weight, tell)
+        search = owner.counterexamples()
+        made = fit(form, Goal(**given), nodes, weight, tell, counterexamples=search)
         table = table_of(made, command, table_name(each), owner)
         return table, _opinion(made) if second_opinion else None
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()
     goal = Goal(**{**own, **given})
-    made = fit(each.require_fitted().form, goal, measure=weight, progress=tell)
+    made = fit(
+        each.require_fitted().form,
+        goal,
+        measure=weight,
+        progress=tell,
+        counterexamples=each.problem.counterexamples(),
+    )
     options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
     command = f"shadefit refit {each.name}{options}"
     table = table_of(made, command, table.name, each.problem)

@@ -13,6 +13,7 @@ from fitting import Errors, Fit, Goal
 from fitting.fit import fit
 from fitting.points.grids import gauss_grid
 from fitting.points.sample import sample_of
+from fitting.proofs.local_optimality import LocalOptimality
 from programs import DenominatorBound
 from programs.bounding.branch_and_bound import Bounds
 from quantities import problem
@@ -63,12 +64,16 @@ def test_a_fit_is_written_down_whole():
 def test_what_is_proven_besides_is_written_down_where_it_is_known():
     goal = Goal("linf", rounding="float32")
     proven = replace(fit_of(Q), goal=goal, range=Bounds(0.25, 1.0, 3), least_error=0.39, below=1e-7)
+    near = replace(fit_of(Q), local_optimality=LocalOptimality(0.002, 3))
+    stated = table_of(near, "make it").certificates.local_optimality
+    assert (stated.decrease, stated.extrema) == (0.002, 3)
     table = table_of(proven, "make it", "mine")
     assert table.name == "mine"
     assert Goal(**table.goal.model_dump()) == goal
     certificates = table.certificates
     assert (certificates.range, certificates.least_error) == ([0.25, 1.0], 0.39)
     assert certificates.conservative_bound == 1e-7
+    assert certificates.local_optimality is None
 
 
 def test_a_fit_to_scattered_points_has_their_number_instead_of_nodes():
