@@ -74,7 +74,7 @@ def _is_like(name: str, letter: str) -> bool:
 
 
 def sum_text(terms: Mapping[Exponents, str | float], symbols: Sequence[str]) -> str:
-    """Write a sum of monomials, such as 'a0 + a1 z + z²'. A coefficient of 1 is left out."""
+    """Write a sum of monomials, such as 'a0 + a1·z + z²'. A coefficient of 1 is left out."""
     parts = []
     for exponents, coefficient in terms.items():
         factors = [
@@ -84,7 +84,7 @@ def sum_text(terms: Mapping[Exponents, str | float], symbols: Sequence[str]) -> 
         ]
         if isinstance(coefficient, str):
             factors.insert(0, coefficient)
-        parts.append(" ".join(factors) or "1")
+        parts.append("·".join(factors) or "1")
     if len(parts) > _WRITTEN:
         parts = [*parts[:3], "…", parts[-1]]
     return " + ".join(parts)
