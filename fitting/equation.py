@@ -15,6 +15,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+# The longest text that a table may have
+_LONGEST = 2000
 # A name: letters, Greek ones too, digits and underscores, but no superscripts
 _NAME = r"[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹][^\W⁰¹²³⁴⁵⁶⁷⁸⁹]*"
 
@@ -30,6 +32,20 @@ def coefficient_symbols(names: Sequence) -> list[str]:
     if all(re.fullmatch(_NAME, word) for word in words) and len(set(words)) == len(words):
         return words
     return [f"C[{k}]" for k in range(len(flat))]
+
+
+def equation_of(symbol: str, text: str, definitions: Sequence[str] = ()) -> str:
+    """Return an equation: the definitions, then what the form's value `symbol` is.
+
+    An equation that is too long for a table ends in '…'.
+    """
+    equation = "; ".join([*definitions, f"{symbol} = {text}"])
+    return equation if len(equation) <= _LONGEST else f"{equation[: _LONGEST - 2]} …"
+
+
+def free_variable(taken: Sequence[str]) -> str:
+    """Return a name for the argument of a function that an equation defines."""
+    return next(each for each in "xvpqr" if each not in taken)
 
 
 def with_names(equation: str, names: Mapping[str, str], first: Sequence[str] = ()) -> str:

@@ -1,12 +1,19 @@
-"""A reader of equations: it parses the text of a table, and evaluates it."""
+"""A reader of equations: it parses the text of a form, and evaluates it."""
 
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-_NAME = r"[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹][^\W⁰¹²³⁴⁵⁶⁷⁸⁹]*"
-_TOKEN = re.compile(rf"\s*(?:(\d+\.?\d*(?:e-?\d+)?)|({_NAME})|([⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(.))")
+import numpy as np
+
+from fitting import Form
+from fitting.equation import coefficient_symbols
+from fitting.linearity import program_of
+from programs import evaluate
+
+NAME = r"[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹][^\W⁰¹²³⁴⁵⁶⁷⁸⁹]*"
+_TOKEN = re.compile(rf"\s*(?:(\d+\.?\d*(?:e-?\d+)?)|({NAME})|([⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(.))")
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _FUNCTIONS: dict[str, Callable[..., float]] = {
     "cos": math.cos,
@@ -18,6 +25,35 @@ _FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": min,
 }
 Known = dict[str, Any]
+# The same operations in another order: rounding of some values of the size of one.
+ROUNDING = 1e-12
+POINTS = 60
+
+
+def points_of(form: Form, count: int = POINTS) -> np.ndarray:
+    columns = np.random.default_rng(len(form.equation)).random((count, len(form.axes)))
+    inner = [axis.place(u) for axis, u in zip(form.axes, columns.T, strict=True)]
+    return np.stack(inner, axis=1)
+
+
+def values_of_equation(form: Form, coefficients: np.ndarray, points: np.ndarray) -> np.ndarray:
+    flat = np.ravel(coefficients).tolist()
+    symbols = coefficient_symbols(form.coefficient_names)
+    own = dict(zip(symbols, flat, strict=True)) if symbols and symbols[0] != "C[0]" else {}
+    found = []
+    for point in points.tolist():
+        place = {axis.symbol: x for axis, x in zip(form.axes, point, strict=True)}
+        found.append(value_of(form.equation, {**own, **place}, flat))
+    return np.array(found)
+
+
+def require_same(form: Form, coefficients: np.ndarray, points: np.ndarray) -> None:
+    flat = np.tile(np.ravel(coefficients), (len(points), 1))
+    expected = evaluate(program_of(form), np.concatenate([flat, points], axis=1))[:, 0]
+    assert np.isfinite(expected).all()
+    found = values_of_equation(form, coefficients, points)
+    size = np.maximum(np.abs(expected), 1.0)
+    assert np.max(np.abs(found - expected) / size) <= ROUNDING
 
 
 def value_of(equation: str, known: Mapping[str, float], coefficients: Sequence[float]) -> float:
@@ -30,7 +66,7 @@ def value_of(equation: str, known: Mapping[str, float], coefficients: Sequence[f
     names: Known = {**known, "C": coefficients}
     result = math.nan
     for statement in equation.split("; "):
-        found = re.fullmatch(rf"({_NAME})(?:\(({_NAME})\))? = (.+)", statement)
+        found = re.fullmatch(rf"({NAME})(?:\(({NAME})\))? = (.+)", statement)
         if found is None:
             raise ValueError(f"no statement: {statement!r}")
         name, argument, text = found.groups()
