@@ -10,6 +10,9 @@ from coefficients.catalogue import entries, resolve
 from coefficients.code_equation import code_equation
 from coefficients.code_options import CodeOptions, shaped
 from coefficients.json_text import WIDTH
+from coefficients.packaged import files
+from coefficients.restate import restated
+from coefficients.table import read, serialise
 from programs.printing.identifiers import ascii_text
 from programs.toolchains.verification import corners
 from quantities import problem
@@ -98,3 +101,17 @@ def test_the_equation_above_code_has_the_names_of_the_arguments(name):
 def test_the_equation_above_code_that_takes_cosines_has_cosines():
     entry = shaped(resolve("best/r-45"), CodeOptions(cosines=True))
     assert code_equation(entry).startswith("g = NdotT; b = 1 − alpha; ")
+
+
+@pytest.mark.parametrize("name", files())
+def test_a_packaged_table_has_the_equation_of_its_form_and_is_written_as_before(name):
+    table, form = read(files()[name]), resolve(name).require_fitted().form
+    assert table.equation == form.equation
+    # To state the equations again changes no byte.
+    assert serialise(restated(table, form)) == files()[name].read_text(encoding="utf-8")
+
+
+def test_only_the_equation_is_restated():
+    table = resolve("best/g-9").require_table()
+    old = table.model_copy(update={"equation": "G by some formula"})
+    assert restated(old, resolve("best/g-9").require_fitted().form) == table
