@@ -10,6 +10,7 @@ import numpy as np
 from fitting import Form
 from fitting.equation import coefficient_symbols
 from fitting.linearity import program_of
+from integrals.reference import Axis
 from programs import evaluate
 
 NAME = r"[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹][^\W⁰¹²³⁴⁵⁶⁷⁸⁹]*"
@@ -31,8 +32,12 @@ POINTS = 60
 
 
 def points_of(form: Form, count: int = POINTS) -> np.ndarray:
-    columns = np.random.default_rng(len(form.equation)).random((count, len(form.axes)))
-    inner = [axis.place(u) for axis, u in zip(form.axes, columns.T, strict=True)]
+    return points_of_axes(form.axes, count)
+
+
+def points_of_axes(axes: Sequence[Axis], count: int) -> np.ndarray:
+    columns = np.random.default_rng(20).random((count, len(axes)))
+    inner = [axis.place(u) for axis, u in zip(axes, columns.T, strict=True)]
     return np.stack(inner, axis=1)
 
 

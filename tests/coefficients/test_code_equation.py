@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.special import expn
 
 from coefficients.catalogue import entries, resolve
 from coefficients.code_equation import code_equation
@@ -16,7 +17,7 @@ from coefficients.table import read, serialise
 from programs.printing.identifiers import ascii_text
 from programs.toolchains.verification import corners
 from quantities import problem
-from tests.equation_reader import NAME, points_of, require_same
+from tests.equation_reader import NAME, points_of, points_of_axes, require_same, value_of
 
 TABLES = [entry.name for entry in entries()]
 
@@ -115,3 +116,35 @@ def test_only_the_equation_is_restated():
     table = resolve("best/g-9").require_table()
     old = table.model_copy(update={"equation": "G by some formula"})
     assert restated(old, resolve("best/g-9").require_fitted().form) == table
+
+
+def root_of(cos_un: float, cos_ut: float, cos_nt: float, alpha: float) -> float:
+    """Return the positive root of the cubic in the closed form of P_s (docs/closed-form.md)."""
+    kappa, m = 1 - alpha**2, alpha**2 * cos_un
+    t = kappa * cos_ut * cos_nt
+    s2 = (1 - kappa * cos_ut**2) * (1 - kappa * cos_nt**2)
+    roots = np.roots([1, m + 2 * t, t * t - s2, -m])
+    return max(roots.real[np.abs(roots.imag) < 1e-12])
+
+
+KNOWN = {
+    "ps": lambda *given: {"root": root_of(*given)},
+    "g": lambda *_: {"E1": lambda x: expn(1, x), "E2": lambda x: expn(2, x)},
+    "q": lambda *_: {"E3": lambda x: expn(3, x)},
+    "velvet": lambda *_: {"π": np.pi, "asin": np.arcsin},
+}
+
+
+@pytest.mark.parametrize("quantity", KNOWN)
+def test_the_equation_of_a_closed_form_gives_its_values(quantity):
+    entry = resolve(f"exact/{quantity}")
+    text = code_equation(entry).removeprefix("closed form: ").partition(", where")[0]
+    (called,) = entry.functions("double")
+    points = points_of_axes(entry.axes, 20)
+    (columns,) = entry.arguments_at(points)
+    names = [each.name for each in called.parameters]
+    found = [
+        value_of(text, {**dict(zip(names, row, strict=True)), **KNOWN[quantity](*row)}, [])
+        for row in columns.tolist()
+    ]
+    np.testing.assert_allclose(found, entry.problem.reference.values(points), rtol=0, atol=1e-11)
