@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from coefficients.catalogue import EXACT, Entry, resolve
+from coefficients.code_equation import code_equation
 from coefficients.proof_text import proofs
 from fitting import judge
 from programs import (
@@ -49,18 +50,15 @@ def header_of(
     """
     functions, precision = trial.calls.functions, trial.precision
     reference = entry.problem.reference
-    equation = entry.equation
     against = reference.compared_with
     meant = f": {reference.symbol} = {reference.definition}" if reference.definition else ""
     head = {
         "Quantity": f"{entry.problem.description}{meant}",
-        "Equation": f"{equation} of table {entry.name}" if entry.fitted else equation,
+        "Equation": code_equation(entry),
         "Domain": _domain(functions),
     }
     if entry.remark:
         head["Arguments"] = entry.remark
-    if entry.fitted is not None and entry.fitted.form.notation:
-        head["Names"] = entry.fitted.form.notation
     if entry.fitted is None:
         # This is the same program with the same number of steps, but evaluated in float64.
         left = trial.against_integral(replace(trial, precision="double").form)

@@ -84,7 +84,7 @@ class Form:
 
     * `reference`: the exact values. `axes`: the axes of the quantity, restricted to the domain that
       the form is fitted on.
-    * `equation`: the formula, or where it is printed.
+    * `equation`: the formula, see `fitting/equation.py`.
     * `coefficient_names`: a list, or a nested list, which has the shape of the coefficients.
     * `stages`: one; or two, if many points share a large part of the work. Then the first stage
       takes the first `shared` axes, and `inputs` maps the values of all axes to the arguments of
@@ -92,8 +92,7 @@ class Form:
     * `starts`: coefficients that a fit may start from. None of them is from a published table.
     * `shape`: the arguments that make this form in its family; None for a form of no family.
     * `solver`: fits the form on a grid (`fitting/solvers`); None stands for the general `OnGrid`.
-    * `notation`: a text for the header of exported code, which says what names in the equation
-      mean.
+    * `printed`: where the equation is printed, such as 'Eq. (3)'; empty if nowhere.
     * `has_least_error`: whether to look for a lower bound of the largest error. There is one only
       for a form that is a quotient of linear functions of its coefficients.
     """
@@ -111,7 +110,7 @@ class Form:
     proofs: Proofs = field(default_factory=Proofs)
     solver: Any = None
     has_least_error: bool = True
-    notation: str = ""
+    printed: str = ""
 
     @property
     def coefficient_shape(self) -> tuple[int, ...]:

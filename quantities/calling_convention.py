@@ -257,8 +257,9 @@ def _summary(text: str, fitted: FittedForm) -> str:
     form = fitted.form
     if form.shape is not None:
         return text.replace(" ({equation})", "").format(equation=form.name)
-    numbered = re.fullmatch(r"Eq\. \((\d+)\)", form.equation)
-    return text.format(equation=f"Eq. {numbered[1]}" if numbered else form.equation)
+    printed = form.printed or form.equation
+    numbered = re.fullmatch(r"Eq\. \((\d+)\)", printed)
+    return text.format(equation=f"Eq. {numbered[1]}" if numbered else printed)
 
 
 def _result_count(fitted: FittedForm) -> int:

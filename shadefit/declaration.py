@@ -21,7 +21,7 @@ from integrals.reference import Axis, Reference, restricted
 from integrals.reference_of_source import EVERYTHING, make_reference, weighted
 from integrals.sampling import Sampling
 from integrals.sources import Source
-from programs.printing.formula import formulas
+from programs.printing.formula import definitions
 from quantities.calling_convention import CallingConvention
 from quantities.defaults import default_calling, default_exact_code
 from quantities.plot_hints import PlotHints
@@ -32,7 +32,7 @@ from shadefit.result import Result, fit_result
 # The names that tables may have
 _NAME = r"[a-z0-9][a-z0-9._-]{0,63}"
 # A form without a docstring gets its formula as the equation, if that is not longer than this.
-_LONGEST = 300
+_LONGEST = 1200
 
 
 class Problem(Quantity):
@@ -229,7 +229,7 @@ class Problem(Quantity):
             program = program_of(form)  # Raises ValueError if the form cannot be exported.
         if form.equation == form.name:
             names = [*map(str, form.coefficient_names), *(axis.symbol for axis in form.axes)]
-            (text,) = formulas(program, names)
+            text = definitions(program, names, self.symbol)
             form = replace(form, equation=text if len(text) <= _LONGEST else form.name)
         self.forms = [*self.forms, form]
         return form

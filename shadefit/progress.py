@@ -1,8 +1,10 @@
 """What a long command is doing, shown on standard error while it runs, if that is a terminal."""
 
+import math
 import sys
 import threading
-from collections.abc import Generator
+import time
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -15,6 +17,8 @@ from shadefit.encoding import has_all
 _SPINNER = "dots"
 # The same without characters that an encoding may lack.
 _PLAIN_SPINNER = "line"
+# Where there is no terminal, at least this many seconds are between two lines.
+_PAUSE = 10.0
 # The display that is on the terminal now, if there is one.
 _shown: list[Progress] = []
 
@@ -67,6 +71,29 @@ def stages() -> Generator[Stages]:
             yield Stages(progress)
         finally:
             _shown.remove(progress)
+
+
+def line_in_pipe(pause: float = _PAUSE) -> Callable[[str, int, int], None]:
+    """Return a function that says on standard error what is done, if that is no terminal.
+
+    It takes a text, the number of steps that are done, and that of all. It writes a line at the
+    first call, and then at most one in `pause` seconds.
+    """
+    began, last = time.monotonic(), -math.inf
+    terminal = sys.stderr.isatty()
+
+    def tell(text: str, done: int, total: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if terminal or now - last < pause:
+            return
+        last = now
+        left = time_left(now - began, float(done), float(total))
+        estimate = "" if left is None else f", about {clock(left)} left"
+        steps = f"; {done} of {total}, {clock(now - began)}{estimate}" if total else ""
+        print(f"{text}{steps}", file=sys.stderr)
+
+    return tell
 
 
 def clear(patience: float = 1.0) -> None:

@@ -6,12 +6,11 @@ from typing import Any
 
 import jax.numpy as jnp
 
+from fitting.equation import equation_of, free_variable
 from fitting.form import Form, Stage
 from fitting.shapes.monomial_sums import coefficient_name, free_letter
 from integrals.reference import Axis, Reference
-
-# Larger sums are written with their first and last terms.
-_WRITTEN = 12
+from programs.printing.formula import number_text
 
 
 def chebyshev(
@@ -47,7 +46,7 @@ def chebyshev(
     taken = {text for axis in axes for text in (axis.name, axis.symbol)}
     t = next(each for each in "tuswz" if each not in taken)
     symbols = [t if len(axes) == 1 else f"{t}{k + 1}" for k in range(len(axes))]
-    equation = _equation(axes, indices, names, symbols)
+    equation = _equation(reference.symbol, axes, indices, names, symbols)
     return Form(name, equation, reference, axes, names, (Stage(value),))
 
 
@@ -90,22 +89,33 @@ def _clenshaw(c: list[Any], shape: Sequence[int], t: Sequence[Any]) -> Any:
 
 
 def _equation(
+    symbol: str,
     axes: Sequence[Axis],
     indices: list[tuple[int, ...]],
     names: list[str],
     symbols: Sequence[str],
 ) -> str:
     terms = [
-        " ".join([name, *(f"T{k}({s})" for k, s in zip(each, symbols, strict=True))])
+        "·".join([name, *(_factor(k, s) for k, s in zip(each, symbols, strict=True) if k)])
         for each, name in zip(indices, names, strict=True)
     ]
-    if len(terms) > _WRITTEN:
-        terms = [*terms[:3], "…", terms[-1]]
     maps = [f"{s} = {_map_text(axis)}" for s, axis in zip(symbols, axes, strict=True)]
-    return f"{' + '.join(terms)}, {', '.join(maps)}, Chebyshev polynomials T"
+    x = free_variable([text for axis in axes for text in (axis.name, axis.symbol)])
+    polynomials = [
+        f"T{k}({x}) = 2·{x}·{_factor(k - 1, x)} − {_factor(k - 2, x)}"
+        for k in range(2, max(max(each) for each in indices) + 1)
+    ]
+    return equation_of(symbol, " + ".join(terms), [*polynomials, *maps])
+
+
+def _factor(degree: int, x: str) -> str:
+    """Write a Chebyshev polynomial of x as a factor."""
+    return ("1", x)[degree] if degree < 2 else f"T{degree}({x})"
 
 
 def _map_text(axis: Axis) -> str:
     middle, width = axis.lower + axis.upper, axis.upper - axis.lower
-    above = f"2 {axis.symbol}" + ("" if middle == 0 else f" {'−+'[middle < 0]} {abs(middle):.6g}")
-    return above if width == 1 else f"({above})/{width:.6g}"
+    above = f"2·{axis.symbol}" + (
+        "" if middle == 0 else f" {'−+'[middle < 0]} {number_text(abs(middle))}"
+    )
+    return above if width == 1 else f"({above})/{number_text(width)}"

@@ -7,6 +7,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
+from fitting.equation import equation_of
 from fitting.form import Form, Stage
 from fitting.shapes.monomial_sums import free_letter
 from integrals.reference import Axis, Reference
@@ -45,7 +46,7 @@ def exponentials(
     names = [f"{letter}{k}" for k in range(1, terms + 1) for letter in (a, b)]
     first = [f"{c0}0"] if constant else []
     two = "²" if monotone else ""
-    parts = [f"{a}{k}{two} exp(−{b}{k}{two} {axis.symbol})" for k in range(1, terms + 1)]
+    parts = [f"{a}{k}{two}·exp(−{b}{k}{two}·{axis.symbol})" for k in range(1, terms + 1)]
     text = " + ".join([*(f"{each}{two}" for each in first), *parts])
 
     def value(c, x) -> Any:
@@ -58,7 +59,8 @@ def exponentials(
     if monotone:
         # The derivative by c0 would be zero at c0 = 0.
         starts = tuple(np.sqrt(np.maximum(start, _LEAST)) for start in starts)
-    return Form(name, text, reference, axes, [*first, *names], (Stage(value),), starts=starts)
+    equation = equation_of(reference.symbol, text)
+    return Form(name, equation, reference, axes, [*first, *names], (Stage(value),), starts=starts)
 
 
 def only_axis(name: str, axes: tuple[Axis, ...]) -> Axis:

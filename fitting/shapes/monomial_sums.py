@@ -73,8 +73,11 @@ def _is_like(name: str, letter: str) -> bool:
     return name.startswith(letter) and name[1:].replace("_", "").isdigit()
 
 
-def sum_text(terms: Mapping[Exponents, str | float], symbols: Sequence[str]) -> str:
-    """Write a sum of monomials, such as 'a0 + a1 z + z²'. A coefficient of 1 is left out."""
+def sum_text(terms: Mapping[Any, str | float], symbols: Sequence[str]) -> str:
+    """Write a sum of monomials, such as 'a0 + a1·z + z²'. A coefficient of 1 is left out.
+
+    `terms` maps exponents, one for each symbol, to the coefficients.
+    """
     parts = []
     for exponents, coefficient in terms.items():
         factors = [
@@ -84,14 +87,8 @@ def sum_text(terms: Mapping[Exponents, str | float], symbols: Sequence[str]) -> 
         ]
         if isinstance(coefficient, str):
             factors.insert(0, coefficient)
-        parts.append(" ".join(factors) or "1")
-    if len(parts) > _WRITTEN:
-        parts = [*parts[:3], "…", parts[-1]]
+        parts.append("·".join(factors) or "1")
     return " + ".join(parts)
-
-
-# Longer sums are written with their first and last terms.
-_WRITTEN = 40
 
 
 _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")

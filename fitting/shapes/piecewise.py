@@ -7,14 +7,13 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
+from fitting.equation import equation_of, free_variable
 from fitting.form import Form, Stage
 from fitting.shapes.chebyshev_sums import require_finite
 from fitting.shapes.exponential_sums import only_axis
 from fitting.shapes.monomial_sums import free_letter
 from integrals.reference import Axis, Reference
-
-# More points are written as the first and last ones.
-_WRITTEN = 40
+from programs.printing.formula import number_text
 
 
 def piecewise_linear(
@@ -50,11 +49,20 @@ def piecewise_linear(
             total = total + (c[k + 1] - c[k]) * ramp
         return total
 
-    points = [f"({place:.6g}, {each})" for place, each in zip(x, names, strict=True)]
-    if len(points) > _WRITTEN:
-        points = [*points[:3], "…", points[-1]]
-    equation = f"linear in {axis.symbol} between the points {', '.join(points)}"
+    v = free_variable([axis.name, axis.symbol])
+    parts = [
+        f"({names[k + 1]} − {names[k]})"
+        f"·ramp({_difference(axis.symbol, left)}/{number_text(right - left)})"
+        for k, (left, right) in enumerate(itertools.pairwise(x))
+    ]
+    text = " + ".join([names[0], *parts])
+    equation = equation_of(reference.symbol, text, [f"ramp({v}) = min(max({v}, 0), 1)"])
     return Form(name, equation, reference, axes, names, (Stage(value),))
+
+
+def _difference(symbol: str, left: float) -> str:
+    sign = "−" if left > 0 else "+"
+    return f"({symbol} {sign} {number_text(abs(left))})" if left else symbol
 
 
 def _places(name: str, knots, axis: Axis) -> list[float]:

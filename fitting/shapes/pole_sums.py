@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from fitting.equation import equation_of
 from fitting.form import Form, Stage
 from fitting.shapes.monomial_sums import free_letter, sum_text
 from fitting.shapes.poles import poles_value
@@ -56,7 +57,7 @@ def pole_sum(
         return poles_value(coefficients, terms, poles, jnp.asarray(variables.at(*point)[0]))
 
     starts = _starts(terms, poles, *_ends(variables.at, axes)) if poles else ()
-    equation = " + ".join(text) + variables.definition
+    equation = equation_of(reference.symbol, " + ".join(text), variables.definitions)
     return Form(name, equation, reference, axes, names, (Stage(value),), starts=starts)
 
 

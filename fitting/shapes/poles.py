@@ -56,6 +56,16 @@ def pole_names(terms: int, poles: int) -> list[str]:
     return numbered + [f"{letter}{k + 1}" for k in range(poles) for letter in "ab"]
 
 
+def poles_text(terms: int, poles: int, x: str) -> str:
+    """Write the sum as text, such as 'c0 + c1·x + a1/(b1 + x)'."""
+    powers = {
+        k: x if k == 1 else f"{f'({x})' if len(x) > 1 else x}{_superscript(k)}"
+        for k in range(terms)
+    }
+    parts = ["c0", *(f"c{k}·{powers[k]}" for k in range(1, terms))][:terms]
+    return " + ".join([*parts, *(f"a{k}/(b{k} + {x})" for k in range(1, poles + 1))])
+
+
 def pole_starts(terms: int, poles: int) -> tuple[np.ndarray, ...]:
     """Return starts of a fit: the polynomial is zero, and the poles are at several distances.
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import jax.numpy as jnp
 
+from fitting.equation import equation_of
 from fitting.form import Form, Stage
 from fitting.shapes.monomial_sums import (
     ONE,
@@ -150,7 +151,7 @@ def _form(
         text = f"{_held(factor[1])}·{text if _is_closed(text) else f'({text})'}"
     if offset is not None:
         text = f"{offset[1]} + {text}"
-    equation = text + variables.definition
+    equation = equation_of(reference.symbol, text, variables.definitions)
     return Form(name, equation, reference, axes, coefficients, (Stage(value),))
 
 

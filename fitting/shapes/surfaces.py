@@ -6,6 +6,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from fitting.shapes.monomial_sums import sum_text
+
 
 def surface_values(coefficients, count: int, degree: int, x, y) -> list[Array]:
     """Return the values of `count` surfaces at x and y.
@@ -31,6 +33,18 @@ def surface_values(coefficients, count: int, degree: int, x, y) -> list[Array]:
 def surface_names(surfaces: list[str], degree: int, x: str, y: str) -> list[str]:
     """Name each coefficient of surfaces by its surface and monomial, such as 'u0: α^1 y^2'."""
     return [f"{name}: {x}^{i} {y}^{j}" for name in surfaces for i, j in _powers(degree)]
+
+
+def surface_text(degree: int, x: str, y: str, first: str) -> str:
+    """Write a surface as text: a sum of the coefficients C[first], C[first+1], … times monomials.
+
+    `first` is the name of a number, or empty: the coefficients then begin at C[0].
+    """
+    places = [
+        f"{first}+{n}" if first and n else first or str(n) for n in range(len(_powers(degree)))
+    ]
+    terms = {each: f"C[{place}]" for each, place in zip(_powers(degree), places, strict=True)}
+    return sum_text(terms, (x, y))
 
 
 def flat_start(

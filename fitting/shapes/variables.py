@@ -23,13 +23,13 @@ _NAMED = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONL
 class Variables:
     """The variables of a shape: `at` maps a point of the axes to their values.
 
-    `symbols` are how an equation calls them. `definition` is the text that follows the equation,
-    such as ', z = η − 1'; it is empty if the variables are the axes.
+    `symbols` are how an equation calls them. `definitions` are the statements before the equation,
+    such as 'z = η − 1'; there are none if the variables are the axes.
     """
 
     at: Callable[..., tuple[Any, ...]]
     symbols: tuple[str, ...]
-    definition: str = ""
+    definitions: tuple[str, ...] = ()
 
 
 def variables_of(of: Callable | None, axes: Sequence[Axis]) -> Variables:
@@ -47,11 +47,10 @@ def variables_of(of: Callable | None, axes: Sequence[Axis]) -> Variables:
     many = results is not None
     symbols = tuple(f"{letter}{k + 1}" for k in range(results)) if many else (letter,)
     texts = written(call, axes, results)
-    definition = "".join(f", {s} = {text}" for s, text in zip(symbols, texts, strict=True))
     return Variables(
         call if many else lambda *point: (call(*point),),
         symbols,
-        definition,
+        tuple(f"{s} = {text}" for s, text in zip(symbols, texts, strict=True)),
     )
 
 

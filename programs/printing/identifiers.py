@@ -18,7 +18,8 @@ _SIGNS = str.maketrans(
 
 def ascii_text(text: str) -> str:
     """Write text in printable ASCII; some shader compilers read nothing else, even in comments."""
-    plain = text.translate(_SIGNS)
+    # √q becomes sqrt(q), not sqrtq.
+    plain = re.sub(r"√([^\W\d⁰-⁹¹²³][^\W⁰-⁹¹²³]*)", r"√(\1)", text).translate(_SIGNS)
     # θf becomes theta_f, not thetaf.
     plain = re.sub(r"([\u0370-\u03ff])(?=[A-Za-z])", r"\1_", plain)
     return "".join(map(_ascii, plain))

@@ -13,6 +13,12 @@ from quantities.problem import ExactCode, Problem
 # The closed form takes logarithms of the density. The code clamps it to this at least; for a layer
 # so thin, G is at most a thousandth (in half precision a sixteenth) at the least v·n of the domain.
 _LEAST_DENSITY = {"half": 2.0**-14, "float": 1e-6, "double": 1e-6}
+_CLOSED_FORM = (
+    "closed form: x = density/NdotV; "
+    "K = ln(1 + 1/NdotV) + E1(density + x) − exp(−x)·E1(density); "
+    "G = 1 − exp(−x)·E2(density) − NdotV·K, where En(x) is the exponential integral "
+    "∫ exp(−x·t)/tⁿ dt over t ≥ 1"
+)
 # From this density on, the layer is opaque: exp(−d) is below the rounding of float64.
 _OPAQUE = 64.0
 
@@ -56,7 +62,7 @@ G = Problem(
     ),
     closed_form=ambient_scattering,
     exact_code=ExactCode(
-        "closed form, by exponential integrals",
+        _CLOSED_FORM,
         AXES,
         exact_functions,
         lambda points: (points[:, ::-1],),

@@ -45,19 +45,18 @@ FACTORS: dict[str, Piece] = {
     ),
 }
 DECAYS = ("exponential", "power")
-# The rates and factors as text for the header of exported code. k₀, k₁, … stand for coefficients.
+# The rates and factors as text. The coefficients of the factor begin at C[{0}].
 _RATE_TEXTS = {
-    "constant": "x = d (1/ν + k0)",
-    "scaled": "x = d (k0 + k1/ν)",
-    "pole": "x = d (k0 + k1/(k2 + ν + d) + 1/ν)",
+    "constant": "d·(1/ν + C[0])",
+    "scaled": "d·(C[0] + C[1]/ν)",
+    "pole": "d·(C[0] + C[1]/(C[2] + ν + d) + 1/ν)",
 }
 _FACTOR_TEXTS = {
-    "linear": "F = 1/(1 + k3 ν)",
-    "affine": "F = 1/(k3 + k4 ν)",
-    "pole": "F = k3 + k4/(k5 + ν)",
-    "inverse": "F = 1/(1 + ν (k3 + k4/(k5 + ν)))",
+    "linear": "1/(1 + C[{0}]·ν)",
+    "affine": "1/(C[{0}] + C[{1}]·ν)",
+    "pole": "C[{0}] + C[{1}]/(C[{2}] + ν)",
+    "inverse": "1/(1 + ν·(C[{0}] + C[{1}]/(C[{2}] + ν)))",
 }
-_ARGUMENTS = "d = density, ν = NdotV"
 
 
 @functools.cache
@@ -83,14 +82,16 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         square = base * base
         return (1 - 1 / (square * square)) * F
 
+    places = range(split, split + len(factor_names) + len(power_names))
+    base = f"base = 1 + x·(C[{places[-2]}] + C[{places[-1]}]·x); " if decay == "power" else ""
     parts = {"rate": rate_names, "factor": factor_names, "decay": power_names}
     # This start is about right for small d and small ν. The fit also starts from multiples of it.
     start = np.array([*rate_start, *factor_start, *power_start])
     return Form(
         name="decay-g",
         equation=(
-            f"G = F(ν) (1 − {'e^(−x)' if decay == 'exponential' else '1/(1 + ax + bx²)⁴'}), "
-            f"rate x {rate}, factor F {factor}"
+            f"x = {_RATE_TEXTS[rate]}; F = {_FACTOR_TEXTS[factor].format(*places)}; "
+            f"{base}G = (1 − {'exp(−x)' if decay == 'exponential' else '1/base⁴'})·F"
         ),
         reference=G,
         axes=AXES,
@@ -98,7 +99,6 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         stages=(Stage(value),),
         starts=(start, start * 1.3, start * 0.75),
         shape={"decay": decay, "rate": rate, "factor": factor},
-        notation=f"{_ARGUMENTS}, {_RATE_TEXTS[rate]}, {_FACTOR_TEXTS[factor]}",
     )
 
 
@@ -123,8 +123,8 @@ def tied_g(*, poles: int, root: int) -> Form:
     return Form(
         name="tied-g",
         equation=(
-            f"G = (1 − e^(−d (1/ν + w){' / (1 + c √d)' if root else ''})) / (1 + ν w), "
-            f"w = {'a₀ + a₁/(b + ν)' if poles else 'a₀'}"
+            f"w = a0{' + a1/(b + ν)' if poles else ''}; "
+            f"x = d·(1/ν + w){'/(1 + c·√d)' if root else ''}; G = (1 − exp(−x))/(1 + ν·w)"
         ),
         reference=G,
         axes=AXES,
@@ -132,7 +132,6 @@ def tied_g(*, poles: int, root: int) -> Form:
         stages=(Stage(value),),
         starts=(first, first * 1.3),
         shape={"poles": poles, "root": root},
-        notation=_ARGUMENTS,
         proofs=Proofs(positive=unguarded),
     )
 

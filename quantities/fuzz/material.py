@@ -46,7 +46,6 @@ def material_form(
     material: Callable[..., tuple[Array, ...]],
     along: Callable[..., Array],
     proofs: DirectionProofs,
-    notation: str = "",
     limited: Callable[..., Array] | None = None,
 ) -> Form:
     """Return a form of P_s of two stages, for α ≥ `least_alpha`.
@@ -93,7 +92,6 @@ def material_form(
         inputs=cosines_of_light,
         starts=starts,
         shape=shape,
-        notation=f"c = NdotU, a = TdotU{notation}; m0, m1, … are the results for the material",
         proofs=Proofs(
             axes=(*axes[:3], COS_PHI),
             value=value,

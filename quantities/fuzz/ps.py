@@ -17,6 +17,12 @@ from quantities.plot_hints import AxisHint, HemisphereHint, PlotHints
 from quantities.problem import ExactCode, Problem
 
 _COSINE = (0.0, 1.0)
+_CLOSED_FORM = (
+    "closed form: c = NdotU; a = TdotU; b = NdotT; κ = 1 − alpha²; m = alpha²·c; T = κ·a·b; "
+    "σ2 = 1 − κ·a²; S = √(σ2·(1 − κ·b²)); P_s = 1 − root²·√((root + c)·(root + m/σ2))/"
+    "(2·root³ + (m + 2·T)·root² + m), where root is the positive solution, by Newton's steps, of "
+    "root·(root − S + T)·(root + S + T) = m·(1 − root²)"
+)
 # The error of the closed form in float32 is measured and stated for α from this on.
 LEAST_EXACT_ALPHA = 0.05
 # The code clamps α to this at least. Smaller fourth powers would leave the range of the precision.
@@ -124,7 +130,7 @@ PS = Problem(
     closed_form=fraction_at,
     error_code=error_code,
     exact_code=ExactCode(
-        "closed form, root by Newton's steps",
+        _CLOSED_FORM,
         restricted(integrals.PS.axes, alpha=(LEAST_EXACT_ALPHA, 1.0)),
         exact_functions,
         lambda points: (np.stack([*cosines_at(points), points[:, 0]], axis=1),),

@@ -18,12 +18,14 @@ from jax.ad_checkpoint import checkpoint_name
 from fitting.form import Form
 from fitting.shapes.surfaces import flat_start, surface_names, surface_values
 from quantities.fuzz.material import DirectionProofs, material_form
+from quantities.fuzz.ps_equations import cubic_equation, one_root_equation, two_root_equation
 from shading.types import Scalar
 
 MAX_DEGREE = 4
 # A lower limit of denominators, of radicands and of λ. It changes no value for unit vectors u, n
 # and t. It avoids division by zero after rounding, and for cosines that belong to no unit vectors.
 LEAST = 1e-6
+_LEAST_TEXT = "1e-6"
 
 
 def _named(names: list[str], values: list[Array]) -> list[Array]:
@@ -77,10 +79,7 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
     values = [0.2, 0.5, 0.0, -0.95, 0.0, 0.0][: len(surfaces)]
     return material_form(
         name="one-root-ps",
-        equation=(
-            f"P_s = 1/2 + (m0 c + m1 a{' + m6 c a' if skew else ''}) / "
-            f"√(m2 + m3 c + m4 a²{' + m5 c a' if skew else ''}), degree {degree}"
-        ),
+        equation=one_root_equation(skew, degree),
         least_alpha=least_alpha,
         shape={"skew": skew, "degree": degree, "least_alpha": least_alpha},
         coefficient_names=surface_names(surfaces, degree, "α", "y"),
@@ -89,7 +88,6 @@ def one_root_ps(*, skew: int, degree: int, least_alpha: float) -> Form:
         along=along,
         limited=limited,
         proofs=DirectionProofs(along, margins, radicand),
-        notation="; the radicand is r",
     )
 
 
@@ -170,11 +168,7 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
     values = [0.0, 0.03, 0.0] if terms == 3 else [0.0, 0.0, 0.03, 0.0, 0.0]
     return material_form(
         name="two-root-ps",
-        equation=(
-            "P_s = 1 - t (t + m3 c) / (8 (σ R + m4 c"
-            f"{' + m6 c²' if terms > 4 else ''})), t = h + R, R = √(h² + m2 c), "
-            f"h = σ - m1 a{' + m5 c' if terms > 3 else ''}, σ = √(1 - m0 a²), degree {degree}"
-        ),
+        equation=two_root_equation(terms, degree, _LEAST_TEXT),
         least_alpha=least_alpha,
         shape={"terms": terms, "degree": degree, "least_alpha": least_alpha},
         coefficient_names=surface_names(surfaces, degree, "α", "y"),
@@ -251,11 +245,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
 
     return material_form(
         name="cubic-ps",
-        equation=(
-            "P_s in closed form, λ from λ² - (S - T)(1 - e) λ = e, e = E / (g + E), "
-            f"g = S + {'max(S, T)' if degree < 0 else '√(S² + T² + m5 c)'}, E = α²c"
-            f"{('', ', and 1 step')[steps] if steps < 2 else f', and {steps} steps'}"
-        ),
+        equation=cubic_equation(steps, degree, _LEAST_TEXT),
         least_alpha=least_alpha,
         shape={"steps": steps, "degree": degree, "least_alpha": least_alpha},
         coefficient_names=surface_names(["m5"], degree, "α", "y") if degree >= 0 else [],
@@ -263,7 +253,6 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         material=material,
         along=along,
         proofs=DirectionProofs(along, margins),
-        notation=", S = m4 √(1 - m0 a²), T = m2 a, E = m1 c, λ = root",
     )
 
 

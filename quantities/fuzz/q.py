@@ -65,7 +65,8 @@ Q = Problem(
     closed_form=average_penetration,
     error_code=_error_code,
     exact_code=ExactCode(
-        "closed form, by an exponential integral",
+        "closed form: Q = 2·E3(density), where E3(x) is the exponential integral "
+        "∫ exp(−x·t)/t³ dt over t ≥ 1",
         AXES,
         exact_functions,
         lambda points: (points,),

@@ -17,6 +17,7 @@ from fitting.shapes.poles import (
     least_offset,
     pole_names,
     pole_starts,
+    poles_text,
     poles_value,
     quotient_of_poles,
 )
@@ -33,12 +34,13 @@ LEAST_DENSITY = 1e-7
 # by zero.
 _LEAST_OFFSET = 5e-4
 
-# The equation of each structure. r is the polynomial with the poles, a function of d or of √d.
+# The equation of each structure, in which {0} is the polynomial with the poles, and the variable of
+# that polynomial
 STRUCTURES = {
-    "free": "r(d)",
-    "one": "1 + d r(d)",
-    "slope": "1 + d (d r(√d) − 2)",
-    "log": "1 + d (d (r(d) − ln d) − 2)",
+    "free": ("{0}", "d"),
+    "one": ("1 + d·({0})", "d"),
+    "slope": ("1 + d·(d·({0}) − 2)", "√d"),
+    "log": ("1 + d·(d·({0} − ln(max(d, 1e-7))) − 2)", "d"),
 }
 
 
@@ -65,9 +67,10 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
     def value(c, density: Scalar) -> Array:
         return _surround(structure, jnp.asarray(density), lambda x: poles_value(c, terms, poles, x))
 
+    text, variable = STRUCTURES[structure]
     return Form(
         name="pole-q",
-        equation=f"Q = {STRUCTURES[structure]}, r a polynomial of {terms} terms and {poles} poles",
+        equation=f"Q = {text.format(poles_text(terms, poles, variable))}",
         reference=Q,
         axes=AXES,
         coefficient_names=pole_names(terms, poles),

@@ -12,6 +12,7 @@ from jax import Array
 
 from fitting.form import Form, Stage
 from fitting.greedy_monomials import greedy_sets
+from fitting.shapes.monomial_sums import sum_text
 from fitting.shapes.monomials import Exponents, horner
 from integrals import R
 from integrals.reference import restricted
@@ -58,10 +59,7 @@ def monomial_r(
     sets = {"N": numerator, "D": denominator}
     return Form(
         name="monomial-r",
-        equation=(
-            f"R = 1/2 + z N/D, z = {symbol}, y = cos²θf, "
-            f"{len(numerator)} and 1 + {len(denominator)} monomials z^i y^j"
-        ),
+        equation=_equation(symbol, numerator, denominator),
         reference=R,
         axes=restricted(R.axes, alpha=(least_alpha, 1.0)),
         coefficient_names=[
@@ -74,6 +72,18 @@ def monomial_r(
             "denominator": [list(each) for each in denominator],
             "least_alpha": least_alpha,
         },
+    )
+
+
+def _equation(symbol: str, numerator: Exponents, denominator: Exponents) -> str:
+    """Write the form as text. The variable 1 − α is called b, as in the exported code."""
+    z = "b" if symbol == "1 − α" else "z"
+    names = iter(range(len(numerator) + len(denominator)))
+    above = {each: f"C[{next(names)}]" for each in numerator}
+    below = {(0, 0): 1.0, **{each: f"C[{next(names)}]" for each in denominator}}
+    return (
+        f"g = cos(θf); {z} = {symbol}; y = g²; N = {sum_text(above, (z, 'y'))}; "
+        f"D = {sum_text(below, (z, 'y'))}; R = 1/2 + {z}·N/D"
     )
 
 

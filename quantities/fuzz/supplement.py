@@ -16,6 +16,7 @@ from integrals import PS, G, Q, R
 from integrals.fuzz.ps import scattered_fraction
 from integrals.reference import restricted
 from quantities.fuzz.lights import cosines_of_light, light_directions
+from quantities.fuzz.ps_equations import rational_ps_equation, rational_r_equation
 from shading.types import Scalar
 
 # The elements of the vector x of Eq. (2) and (5), in the order of Listing 1.
@@ -65,7 +66,8 @@ _ROW_NAMES = ["t", *(f"p {x}" for x in TERMS), *(f"q {x}" for x in TERMS)]
 
 RATIONAL_PS = Form(
     name="rational-ps",
-    equation="Eq. (1) and (2)",
+    equation=rational_ps_equation(),
+    printed="Eq. (1) and (2)",
     reference=PS,
     axes=restricted(PS.axes, alpha=(0.15, 1.0), theta_f=(0.1, np.pi / 2)),
     coefficient_names=[[f"c{i}: {name}" for name in _ROW_NAMES] for i in range(6)],
@@ -103,7 +105,8 @@ def _rational_g(c, density: Scalar, cos_v: Scalar) -> Array:
 
 RATIONAL_G = Form(
     name="rational-g",
-    equation="Eq. (3)",
+    equation="G = d·(1 + ν·(c0 + ν·c1))/(d + ν·(c2 + ν²·c3))",
+    printed="Eq. (3)",
     reference=G,
     axes=restricted(G.axes, density=(0.001, 0.5), cos_v=(0.001, 1.0)),
     coefficient_names=["c0: dν", "c1: dν²", "c2: ν", "c3: ν³"],
@@ -120,7 +123,8 @@ def _quadratic_q(c, density: Scalar) -> Array:
 
 QUADRATIC_Q = Form(
     name="quadratic-q",
-    equation="Eq. (4)",
+    equation="Q = 1 + d·(c0 + d·c1)",
+    printed="Eq. (4)",
     reference=Q,
     axes=restricted(Q.axes, density=(0.0, 0.5)),
     coefficient_names=["c0: d", "c1: d²"],
@@ -130,7 +134,8 @@ QUADRATIC_Q = Form(
 
 RATIONAL_R = Form(
     name="rational-r",
-    equation="Eq. (5)",
+    equation=rational_r_equation(_BELOW_R),
+    printed="Eq. (5)",
     reference=R,
     axes=restricted(R.axes, alpha=(0.15, 1.0)),
     coefficient_names=["t", *(f"p {x}" for x in TERMS), *(f"q {x}" for x in TERMS[:_BELOW_R])],

@@ -8,6 +8,10 @@ from quantities.fuzz.velvet_form import AXES, CONSERVATIVE_NORM
 from quantities.plot_hints import AxisHint, PlotHints
 from quantities.problem import ExactCode, Problem
 
+_CLOSED_FORM = (
+    "closed form: x = −asymmetry; s = √(1 − x²); A = π + 2·asin(x); "
+    "r = (π/2)·x²·s/(A·(2·x² − 1) + 2·x·s + π·s³), where x > 0; by a power series for small x"
+)
 _REMARK = "asymmetry is k of Schlick's lobe p_Schlick(k, -sin(t, h)), whose factor r is"
 
 
@@ -32,7 +36,7 @@ VELVET = Problem(
         remark=_REMARK,
     ),
     closed_form=normalisation,
-    exact_code=ExactCode("closed form", AXES, exact_functions, lambda points: (points,), _REMARK),
+    exact_code=ExactCode(_CLOSED_FORM, AXES, exact_functions, lambda points: (points,), _REMARK),
     plot=PlotHints(
         {"asymmetry": AxisHint("asymmetry $k$", -0.95, 0.0, -0.5)},
         values=(0.0, 1.0),

@@ -130,7 +130,7 @@ def _beyond(phi, x, s):
 
 CONSERVATIVE_NORM = Form(
     name="conservative-norm",
-    equation="r = s / (1 + x (c0 + c1 x + c2 (1 - s))), x = -k, s = sqrt(1 - k²)",
+    equation="x = −k; s = √((1 − x)·(1 + x)); r = s/(1 + x·(c0 + c1·x + c2·(1 − s)))",
     reference=VELVET,
     axes=AXES,
     coefficient_names=["c0: x", "c1: x²", "c2: x(1 − s)"],

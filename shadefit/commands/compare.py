@@ -101,8 +101,7 @@ def _print(comparison: "Comparison") -> None:
     first = comparison.contestants[0]
     domain = ", ".join(f"{axis.name} in {axis.domain}" for axis in comparison.domain.axes)
     print_table(
-        f"{comparison.quantity}: {first.table.equation}, "
-        f"{first.errors.points:,} points off the grid",
+        f"{comparison.quantity}: {first.table.form}, {first.errors.points:,} points off the grid",
         ["table", "rms error", "ratio", "largest error", "ratio", "at"],
         [
             [

@@ -176,7 +176,7 @@ def run(
     else:
         print_table(
             "Refitted tables",
-            ["table", "equation", "coefficients", "rms", "largest", "denominators ≥", ""],
+            ["table", "form", "coefficients", "rms", "largest", "denominators ≥", ""],
             [_row(table, file) for table, file in zip(tables, files, strict=True)],
             "Errors are measured off the grid, against exact values.",
             below=1,
@@ -272,7 +272,7 @@ def _row(table: "Table", file: Path) -> list[str]:
     bound = certificates.denominator_bound
     return [
         table.name,
-        table.equation if len(table.equation) <= 20 else table.form,
+        table.form,
         str(table.size),
         f"{errors.off_grid.rms:.4e}",
         f"{errors.off_grid.max:.4e}",

@@ -66,7 +66,7 @@ def search(
     from fitting import Goal
     from quantities import problems
     from shadefit.figures.search import draw
-    from shadefit.progress import stages
+    from shadefit.progress import line_in_pipe, stages
 
     fields: dict[str, Any] = {"norm": "linf", "rounding": "float32"}
     fields |= goal_fields(norm, side, rounding, relative, bounded)
@@ -87,11 +87,15 @@ def search(
     ends = {**owner.search_lower, **_lower_ends(owner, lower or [])}
     require_writable(out)
     wanted = Search(owner, goal, out, budget, ends)
+    in_pipe = line_in_pipe()
     with stages() as progress:
         line = progress.begin(quantity)
-        result = wanted.run(
-            lambda stage, done, total: line.show(f"{quantity}: {stage}", done, total)
-        )
+
+        def tell(stage: str, done: int, total: int) -> None:
+            line.show(f"{quantity}: {stage}", done, total)
+            in_pipe(f"{quantity}: {stage}", done, total)
+
+        result = wanted.run(tell)
     drawn = out / f"{quantity}-frontier"
     for extension, data in draw(known[quantity], result).items():
         write_whole_bytes(drawn.with_suffix(f".{extension}"), data)
@@ -173,8 +177,9 @@ def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, dra
         ["table", "form", "coefficients", "operations", "rms", "largest", "published / this"],
         [_row(each, result.published) for each in (*first, *(good or result.best), *result.exact)],
         f"Operations a call, of P_s a direction. {result.refused} forms refused: they have poles, "
-        f"or are not shown to have none. Plot: {drawn}.png",
+        f"or are not shown to have none.",
     )
+    print(f"plot {drawn}.png")
 
 
 def _row(each: "Found", published: "Found | None") -> list[str]:

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from coefficients.catalogue import entries
 from coefficients.exported_code import exported_values
 from quantities import Problem
-from shadefit.figures.style import COLOURS, DASHES, KINDS
-from shadefit.figures.values import axis_hints, exact, hints_of, points_along
+from shadefit.figures.style import COLOURS, DASHES
+from shadefit.figures.values import axis_hints, exact, hints_of, kind_label, points_along
 
 _NODES = 201
 # The free part above the largest value, as a fraction of the range of the values.
@@ -43,7 +43,7 @@ def draw_curves(owner: Problem) -> Figure:
     ends = {}
     for entry in tables:
         kind = entry.kind
-        label = None if kind in drawn else KINDS[kind]
+        label = None if kind in drawn else kind_label(kind, owner)
         drawn.add(kind)
         values = exported_values(entry, points)
         error = values - truth

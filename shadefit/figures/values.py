@@ -9,6 +9,9 @@ from coefficients.exported_code import exported_values
 from integrals.reference import Axis, Reference
 from quantities import Problem
 from quantities.plot_hints import AxisHint, PlotHints
+from shadefit.figures.style import KINDS
+
+_FITTED = "fitted table"
 
 
 def hints_of(owner: Problem) -> PlotHints:
@@ -70,6 +73,11 @@ def compared_values(
 def label_of(entry: Entry) -> str:
     """Return what pictures call a table: 'published', 'refitted', or its name."""
     return entry.kind if entry.kind in ("published", "refitted") else entry.name
+
+
+def kind_label(kind: str, owner: Problem) -> str:
+    """Return what a legend calls a kind of tables. Without a published form nothing is refitted."""
+    return _FITTED if kind == "refitted" and published(owner) is None else KINDS[kind]
 
 
 def round_up(value: float, steps: Sequence[float] = (1.0, 2.0, 5.0, 10.0)) -> float:

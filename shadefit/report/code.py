@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Sequence
 
 from coefficients.catalogue import EXACT, Entry, resolve
+from coefficients.code_equation import code_equation
 from coefficients.exported_code import LICENCE, LICENCE_LABEL
 from coefficients.proof_text import proofs
 from programs import write_source
@@ -39,13 +40,9 @@ def _code(entry: Entry) -> dict:
 def _header(entry: Entry) -> dict[str, str]:
     """Return the comment above the code: what is known about it without running it."""
     head = {LICENCE_LABEL: LICENCE, "Quantity": entry.problem.description}
-    head["Equation"] = (
-        entry.equation if entry.table is None else f"{entry.equation} of table {entry.name}"
-    )
+    head["Equation"] = code_equation(entry)
     if entry.remark:
         head["Arguments"] = entry.remark
-    if entry.fitted is not None and entry.fitted.form.notation:
-        head["Names"] = entry.fitted.form.notation
     if entry.table is not None:
         proven = proofs(entry)
         if proven:

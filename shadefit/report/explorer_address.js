@@ -1,9 +1,9 @@
 // The state of the explorer in the address, after "#", so that a place can be kept or sent.
 // What is read may come from anybody: unknown names and wrong values are left out.
 
-const CHOICES = { errors: ["automatic", "linear", "logarithmic"], maps: ["common", "own"] };
+const CHOICES = { errors: ["automatic", "linear", "logarithmic"], maps: ["automatic", "common", "own"] };
 // What is chosen from CHOICES, and what code is shown.
-const choices = { errors: "automatic", maps: "common", code: "", language: known.languages[0].key };
+const choices = { errors: "automatic", maps: "automatic", code: "", language: known.languages[0].key };
 
 function addressOf() {
     const said = new URLSearchParams({ quantity: current.name });

@@ -112,8 +112,9 @@ function drawDiscs() {
     disc(canvases[0], known.colours.values, (x, y, pixel) => (truth[pixel] - low) / (high - low));
     describe(figures[0], "exact", known.colours.values, [low, high]);
     const worst = errors.map(largest);
+    const limits = limitsOfMaps(worst, choices.maps);
     chosen.forEach((table, i) => {
-        const limit = roundUp(Math.max(choices.maps === "own" ? worst[i] : Math.max(...worst), 1e-15));
+        const limit = limits[i];
         disc(canvases[i + 1], known.colours.errors, (x, y, pixel) =>
             0.5 + errors[i][pixel] / (2 * limit));
         const title = `${table.name} − exact, up to ${worst[i].toExponential(1)}`;

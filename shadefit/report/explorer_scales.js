@@ -70,6 +70,17 @@ function rangeOfErrors(errors, wanted) {
         range: [10 ** Math.floor(power(BELOW * least)), 10 ** Math.ceil(power(most) - 1e-9)] };
 }
 
+// The limits of the colour scales of tables' maps, from the largest error of each. `wanted` is "own"
+// for one scale for each table, "common" for one for all, or "automatic": one for all unless the
+// errors differ so much that some maps would have no colour.
+function limitsOfMaps(worst, wanted) {
+    const positive = worst.filter((value) => value > 0);
+    const most = Math.max(...worst);
+    const own = wanted === "own"
+        || (wanted === "automatic" && most > FAR_APART * Math.min(...positive));
+    return worst.map((value) => roundUp(Math.max(own ? value : most, 1e-15)));
+}
+
 // A map from values to the interval from 0 to 1, and back.
 function scaleOf([low, high], logarithmic) {
     if (!logarithmic) return {

@@ -85,7 +85,7 @@ def _entry(mark: Mark, owner: Problem, own: Mapping[str, Entry]) -> Entry:
 def _row(mark: Mark, base: Mark | None, entry: Entry) -> str:
     table = entry.table
     cells = [
-        table.equation if table else "closed form",
+        table.form if table else "closed form",
         str(table.size) if table else "0",
         _operations(entry),
         f"{mark.rms:.3e}",

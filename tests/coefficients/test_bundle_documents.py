@@ -97,7 +97,7 @@ def test_materialx_has_definitions_and_graphs_that_compute_the_tables(written):
 
 def test_materialx_makes_glsl_that_computes_the_table(written, tmp_path):
     if find_spec("MaterialX") is None:
-        pytest.skip("the package MaterialX is not here: pip install MaterialX")
+        pytest.skip("the package MaterialX is not here: make toolchains")
     mx, shaders = import_module("MaterialX"), import_module("MaterialX.PyMaterialXGenShader")
     generator = import_module("MaterialX.PyMaterialXGenGlsl").GlslShaderGenerator.create()
     document, library = mx.createDocument(), mx.createDocument()

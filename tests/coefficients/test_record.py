@@ -42,7 +42,11 @@ def fit_of(fitted, bound: float = 0.5) -> Fit:
 def test_a_fit_is_written_down_whole():
     table = table_of(fit_of(G), "make it")
     assert table.coefficients == G.constants.tolist()
-    assert (table.name, table.form, table.equation) == ("g", "rational-g", "Eq. (3)")
+    assert (table.name, table.form, table.equation) == (
+        "g",
+        "rational-g",
+        "G = d·(1 + ν·(c0 + ν·c1))/(d + ν·(c2 + ν²·c3))",
+    )
     assert (table.quantity, table.shape, table.goal) == ("g", None, None)
     assert [(n.argument, n.count, n.spacing) for n in table.grid.nodes] == [
         ("density", 9, "gauss-legendre"),

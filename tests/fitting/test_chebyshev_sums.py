@@ -34,8 +34,7 @@ def test_the_sum_over_two_axes_is_that_of_all_products():
     assert float(form(c, x, y)) == pytest.approx(float(expected), rel=1e-13)
     assert form.coefficient_names[:5] == ["c00", "c01", "c02", "c03", "c10"]
     assert chebyshev(TOY, 1, name="c").equation == (
-        "c00 T0(t1) T0(t2) + c01 T0(t1) T1(t2) + c10 T1(t1) T0(t2) + c11 T1(t1) T1(t2), "
-        "t1 = 2 x − 1, t2 = (2 y − 1)/3, Chebyshev polynomials T"
+        "t1 = 2·x − 1; t2 = (2·y − 1)/3; f = c00 + c01·t2 + c10·t1 + c11·t1·t2"
     )
 
 

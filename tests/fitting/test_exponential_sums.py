@@ -16,7 +16,7 @@ from tests.fitting.toys import TOY
 def test_a_sum_of_exponentials_has_its_value_names_and_text():
     form = exponentials(LINE, 2, name="e", constant=True)
     assert form.coefficient_names == ["c0", "a1", "b1", "a2", "b2"]
-    assert form.equation == "c0 + a1 exp(−b1 η) + a2 exp(−b2 η)"
+    assert form.equation == "f = c0 + a1·exp(−b1·η) + a2·exp(−b2·η)"
     c = np.array([0.25, 2.0, 0.5, -3.0, 4.0])
     expected = 0.25 + 2 * np.exp(-0.5 * 1.7) - 3 * np.exp(-4 * 1.7)
     assert float(form(c, 1.7)) == pytest.approx(expected, rel=1e-14)
@@ -49,7 +49,7 @@ def test_starts_do_not_overflow_and_fit_the_width(lower, upper):
 
 def test_a_monotone_sum_is_positive_and_falls_whatever_the_coefficients():
     form = exponentials(LINE, 2, name="e", constant=True, monotone=True)
-    assert form.equation == "c0² + a1² exp(−b1² η) + a2² exp(−b2² η)"
+    assert form.equation == "f = c0² + a1²·exp(−b1²·η) + a2²·exp(−b2²·η)"
     for c in np.random.default_rng(4).normal(size=(20, 5)):
         values = [float(form(c, eta)) for eta in (1.0, 1.5, 3.0)]
         assert values[0] > values[1] > values[2] > 0

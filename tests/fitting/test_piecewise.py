@@ -28,7 +28,10 @@ def test_values_are_interpolated_and_constant_outside_the_knots(knots):
 def test_knots_follow_the_scale_of_the_axis():
     reference = replace(LINE, axes=(replace(AXIS, lower=0.01, upper=1.0, scale="logarithmic"),))
     form = piecewise_linear(reference, 3, name="p")
-    assert form.equation == "linear in η between the points (0.01, c0), (0.1, c1), (1, c2)"
+    assert form.equation == (
+        "ramp(x) = min(max(x, 0), 1); f = c0 + (c1 − c0)·ramp((η − 0.01)/0.09000000000000001) "
+        "+ (c2 − c1)·ramp((η − 0.1)/0.9)"
+    )
 
 
 def test_it_is_linear_has_no_pole_and_its_range_is_proven():

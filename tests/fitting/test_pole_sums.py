@@ -13,7 +13,7 @@ from tests.fitting.toys import TOY
 def test_a_pole_sum_has_its_value_names_and_text():
     form = pole_sum(LINE, 2, 1, name="p", of=lambda eta: eta - 1)
     assert form.coefficient_names == ["c0", "c1", "a1", "b1", "a2", "b2"]
-    assert form.equation == "c0 + c1 z + a1/(b1 + z) + a2/(b2 + z), z = η − 1"
+    assert form.equation == "z = η − 1; f = c0 + c1·z + a1/(b1 + z) + a2/(b2 + z)"
     c = np.array([0.5, 2.0, 1.0, 0.25, -1.0, 3.0])
     z = 0.7
     expected = 0.5 + 2 * z + 1 / (0.25 + z) - 1 / (3 + z)

@@ -327,8 +327,8 @@ def test_the_discs_follow_the_material(page):
             "() => [...document.querySelectorAll('#discs canvas')].map((c) => c.toDataURL())"
         )
 
-    # The errors of one table are so small that they have no colour on the scale of the other.
-    page.select_option("#maps", "own")
+    # The errors of one table are so small that they have no colour on the scale of the other: at
+    # first each has its own.
     before = drawn()
     assert len(before) == 3
     assert len(set(before)) == 3
@@ -484,6 +484,9 @@ def test_maps_have_colour_bars_whose_scale_adapts(page):
         every = [bar.inner_text().split() for bar in page.locator("#discs .ends").all()]
         return [[float(value.replace("−", "-")) for value in bar] for bar in every]
 
+    assert page.input_value("#maps") == "automatic"
+    own = ends()
+    page.select_option("#maps", "common")
     common = ends()
     assert len(common) == 3
     assert common[1] == common[2]
@@ -496,6 +499,7 @@ def test_maps_have_colour_bars_whose_scale_adapts(page):
     assert ends() == common
     page.select_option("#maps", "own")
     assert ends()[2] == alone[1]
+    assert ends() == own
 
 
 def test_errors_that_differ_much_are_drawn_on_a_logarithmic_scale(page):
@@ -685,6 +689,8 @@ console.log(JSON.stringify({
     exactly: rangeOfErrors([[0, 0]], "logarithmic"),
     powers: powersOfTen(1e-8, 1, 4),
     within: powersOfTen(0.2, 0.9, 5),
+    maps: ["automatic", "common", "own"].flatMap((wanted) => [
+        limitsOfMaps([0.15, 8e-6, 0], wanted), limitsOfMaps([0.15, 0.011], wanted)]),
     up: [0.011, 0.02, 0.2000001, 9, 1e-15].map(roundUp),
 }));
 """
@@ -703,6 +709,11 @@ def test_scales_adapt_to_values():
     assert found["apart"]["logarithmic"] is True
     assert found["apart"]["range"] == pytest.approx([1e-7, 0.1], rel=1e-9)
     assert found["exactly"]["logarithmic"] is False
+    far, near, *others = found["maps"]
+    assert far == pytest.approx([0.2, 1e-5, 1e-15], rel=1e-9)
+    assert near == pytest.approx([0.2, 0.2], rel=1e-9)
+    assert others[0] == pytest.approx([0.2, 0.2, 0.2], rel=1e-9)
+    assert others[3] == pytest.approx([0.2, 0.02], rel=1e-9)
     assert found["powers"] == pytest.approx([1e-8, 1e-6, 1e-4, 1e-2, 1], rel=1e-9)
     assert found["within"] == pytest.approx([0.2, 0.4, 0.6, 0.8], **close)
     assert found["up"] == pytest.approx([0.02, 0.02, 0.5, 10, 1e-15], rel=1e-9)

@@ -452,3 +452,13 @@ def test_committed_pictures_are_small_and_can_be_read():
 @pytest.mark.parametrize("name", pictures())
 def test_every_picture_is_drawn_the_same_twice(name):
     assert render(pictures()[name].draw) == render(pictures()[name].draw)
+
+
+def test_a_table_without_a_published_form_is_not_called_refitted():
+    (_, legend) = curves.draw_curves(problem("velvet")).axes[0].get_legend().get_texts()
+    assert legend.get_text() == "fitted table"
+    said = [
+        text.get_text()
+        for text in curves.draw_curves(problem("q")).axes[0].get_legend().get_texts()
+    ]
+    assert "refitted, same form" in said

@@ -8,7 +8,7 @@ import pytest
 from rich.progress import Progress
 
 from shadefit import progress
-from shadefit.progress import clock, stages, time_left
+from shadefit.progress import clock, line_in_pipe, stages, time_left
 
 
 @pytest.mark.parametrize(
@@ -83,3 +83,29 @@ def test_the_display_is_erased_by_another_thread(monkeypatch):
         progress.clear()
         assert not shown.progress.live.is_started
     assert progress._shown == []
+
+
+def test_where_there_is_no_terminal_a_line_says_what_is_done(monkeypatch, capsys):
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    tell = line_in_pipe(pause=10.0)
+    for seconds, done, total in [
+        (100, 0, 0),
+        (103, 0, 40),
+        (130, 3, 40),
+        (139, 4, 40),
+        (140, 5, 40),
+    ]:
+        now[0] = float(seconds)
+        tell("q: pole-q", done, total)
+    assert capsys.readouterr().err.splitlines() == [
+        "q: pole-q",
+        "q: pole-q; 3 of 40, 0:30, about 6:10 left",
+        "q: pole-q; 5 of 40, 0:40, about 4:40 left",
+    ]
+
+
+def test_on_a_terminal_these_lines_are_left_out(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    line_in_pipe()("q", 1, 2)
+    assert sys.stderr.getvalue() == ""

@@ -99,3 +99,11 @@ def test_a_form_that_was_refused_is_not_tried_again(tmp_path, capsys, monkeypatc
     reasons = list(tmp_path.glob("*.refused.txt"))
     assert reasons
     assert {path.read_text() for path in reasons} == {"it has a pole\n"}
+
+
+def test_the_plot_has_a_line_of_its_own_and_a_pipe_hears_of_the_work(tmp_path, capsys):
+    search("q", budget=4, norm="l2", out=tmp_path)
+    said = capsys.readouterr()
+    assert said.out.splitlines()[-1] == f"plot {tmp_path / 'q-frontier'}.png"
+    assert "Operations a call, of P_s a direction." in " ".join(said.out.split())
+    assert said.err.splitlines()[0] == "q: which forms to try"
