@@ -196,7 +196,12 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     is the first λ, and `steps` Newton steps follow. If `degree` is −1, g = S + max(S, T), and the
     form has no coefficients. Otherwise g = S + √(S² + T² + m₅c), where m₅ contains a polynomial in
     α and y = cos²θf of total degree `degree`.
+
+    After two steps the form is so precise that the rounding of float32 would be seen. Then q and σ²
+    are sums of positive numbers, and S² − T² is a product, so that nothing cancels. The Newton step
+    is one quotient, which saves as many operations as σ² takes more.
     """
+    precise = steps > 1
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
         """Return κ, α², κb, q, √q, and m₅ if the form has it."""
@@ -206,7 +211,11 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         square = alpha * alpha
         beta = 1 - alpha
         kappa = beta * (1 + alpha)
-        q = 1 - kappa * y
+        if precise:
+            sine = jnp.sin(theta_f)
+            q = square + kappa * (sine * sine)
+        else:
+            q = 1 - kappa * y
         m = (kappa, square, kappa * b, q, jnp.sqrt(q))
         if degree < 0:
             return m
@@ -217,7 +226,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         # notation: c, a, S, T, E and e as above, root is λ; the cubic is λ³ + (E + 2T) λ² + wλ − E,
         # with w = T² − S².
         c, a = cos_un, cos_ut
-        sigma2 = 1 - m[0] * a * a
+        sigma2 = m[1] + m[0] * ((1 - a) * (1 + a)) if precise else 1 - m[0] * a * a
         S = m[4] * jnp.sqrt(sigma2)
         T = m[2] * a
         E = m[1] * c
@@ -227,7 +236,17 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         h = (S - T) * (0.5 - 0.5 * e)
         root = jnp.maximum(h + jnp.sqrt(h * h + e), LEAST)
         ellipse = None
-        if steps:
+        if precise:
+            p, r = S - T, S + T
+            b = E + (r - p)
+            w = p * r
+            for _ in range(steps):
+                product = (root + b) * root
+                rising = root * root + product
+                slope = jnp.maximum(rising + (product - w), LEAST)
+                root = jnp.maximum((rising * root + E) / slope, LEAST)
+            ellipse = 3 * root + (b + b) - w / root
+        elif steps:
             b = E + T + T
             w = (1 - sigma2) - m[3]
             for _ in range(steps):
