@@ -199,9 +199,7 @@ def _rounded(number: int, error: OperationError, operands: Sequence[str]) -> str
     if not error.ulps_of_argument:
         return f"rounded(K, p{number}, {c_number(part)}, {absolute})"
     more = c_number(error.ulps_of_argument * ULP)
-    return (
-        f"rounded_more(K, p{number}, {c_number(part)}, {absolute}, {more}, JET({operands[0]}))"
-    )
+    return f"rounded_more(K, p{number}, {c_number(part)}, {absolute}, {more}, JET({operands[0]}))"
 
 
 def _body(plan: _Plan) -> list[str]:

@@ -187,6 +187,16 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
     )
 
 
+def _improved(root: Array, b: Array, w: Array, E: Array, steps: int) -> Array:
+    """Improve the root of λ³ + bλ² − wλ = E by Newton steps, each of them one quotient."""
+    for _ in range(steps):
+        product = (root + b) * root
+        rising = root * root + product
+        slope = jnp.maximum(rising + (product - w), LEAST)
+        root = jnp.maximum((rising * root + E) / slope, LEAST)
+    return root
+
+
 @functools.cache
 def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     """Return the closed form with an approximate root λ of the cubic.
@@ -197,9 +207,9 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     form has no coefficients. Otherwise g = S + √(S² + T² + m₅c), where m₅ contains a polynomial in
     α and y = cos²θf of total degree `degree`.
 
-    After two steps the form is so precise that the rounding of float32 would be seen. Then q and σ²
-    are sums of positive numbers, and S² − T² is a product, so that nothing cancels. The Newton step
-    is one quotient, which saves as many operations as σ² takes more.
+    A form with two steps is so precise that rounding to float32 would be seen. There q and σ² are
+    sums of positive numbers and S² − T² is a product. A step then is one quotient, which saves the
+    operations that σ² takes more.
     """
     precise = steps > 1
 
@@ -211,11 +221,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         square = alpha * alpha
         beta = 1 - alpha
         kappa = beta * (1 + alpha)
-        if precise:
-            sine = jnp.sin(theta_f)
-            q = square + kappa * (sine * sine)
-        else:
-            q = 1 - kappa * y
+        q = square + kappa * (s := jnp.sin(theta_f)) * s if precise else 1 - kappa * y
         m = (kappa, square, kappa * b, q, jnp.sqrt(q))
         if degree < 0:
             return m
@@ -237,14 +243,11 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         root = jnp.maximum(h + jnp.sqrt(h * h + e), LEAST)
         ellipse = None
         if precise:
-            p, r = S - T, S + T
+            p = S - T
+            r = S + T
             b = E + (r - p)
             w = p * r
-            for _ in range(steps):
-                product = (root + b) * root
-                rising = root * root + product
-                slope = jnp.maximum(rising + (product - w), LEAST)
-                root = jnp.maximum((rising * root + E) / slope, LEAST)
+            root = _improved(root, b, w, E, steps)
             ellipse = 3 * root + (b + b) - w / root
         elif steps:
             b = E + T + T

@@ -1,0 +1,96 @@
+"""A proven bound of what float32 rounding adds to a form's error, in code that is exported."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fitting.proofs.largest_error import printed
+from integrals.reference import Axis, box_of
+from programs.bounding.compiled import compile_kernel, compiler_missing
+from programs.bounding.largest import LargestValue, Report, bound_largest
+from programs.bounding.rounding import joined, rounding_parts
+from programs.bounding.rounding_model import RoundingModel
+from programs.functions import Function
+from programs.printing.lowering import lowered
+from programs.toolchains.process import ToolchainError
+from programs.tracing.tracer import trace
+
+# The bound and the largest value found of the sum that it bounds are at most this far apart.
+RATIO = 1.2
+# The search gives up after so many boxes: some minutes on one core.
+MAX_BOXES = 5_000_000
+
+
+@dataclass(frozen=True)
+class TracedArguments:
+    """The arguments of exported functions as a JAX function, of variables that a proof divides.
+
+    * `axes`: the variables and their domains.
+    * `call`: maps a value of each variable to the own arguments of all functions, in order.
+    * `rounded`: for each argument, whether it is computed from the variables, and then rounded to
+      float32. The others are variables themselves.
+    """
+
+    axes: tuple[Axis, ...]
+    call: Callable[..., tuple]
+    rounded: tuple[bool, ...]
+
+
+def bound_rounding(
+    functions: Sequence[Function],
+    arguments: TracedArguments,
+    model: RoundingModel,
+    ratio: float = RATIO,
+    *,
+    threads: int = 2,
+    max_boxes: int = MAX_BOXES,
+    progress: Report = lambda _: None,
+) -> LargestValue:
+    """Bound the difference between the float32 value of exported functions and their exact value.
+
+    Both are for the same arguments, which are float32 numbers and not below the smallest normal
+    one, unless they are zero. The exact value is that of the operations without rounding, with
+    constants in float64. Arguments: `functions`, in the order of the calls; `model`, the errors of
+    single operations; `ratio`, above 1, of the bound to the largest sum of errors that was found;
+    `threads`; `max_boxes`, after which the search gives up; `progress`, which is called several
+    times a second. Returns the bound as `upper`, which is None if there is no proof. Raises
+    ValueError without a C compiler, for an infinite domain, and for an operation without a model.
+    """
+    program = joined([lowered(trace(each), model.available) for each in functions])
+    box = _rounded_box(arguments)
+    if not np.isfinite(box).all():
+        raise ValueError(f"{program.name}: a domain is infinite; allowed are finite ones")
+    reason = compiler_missing()
+    if reason is not None:
+        raise ValueError(f"the proof needs a C compiler: {reason}")
+    count, names = len(arguments.rounded), tuple(f"x{k}" for k in range(len(box)))
+    given = ", ".join(f"x[{k}]" for k in range(len(box)))
+    if count != len(program.inputs):
+        raise ValueError(f"{program.name} has {len(program.inputs)} arguments; given: {count}")
+    parts = (
+        printed("arguments", names, arguments.call, count),
+        *rounding_parts(program, model, f"arguments(K, {given}, v);", arguments.rounded),
+    )
+    try:
+        kernel = compile_kernel(parts, len(box))
+    except ToolchainError as error:
+        raise ValueError(f"{error.summary}: allowed is gcc or a compiler like it") from error
+    return bound_largest(
+        kernel, box, ratio, threads=threads, max_boxes=max_boxes, progress=progress
+    )
+
+
+def has_model(functions: Sequence[Function], model: RoundingModel) -> bool:
+    """Return whether the error of each operation of functions is known in a model."""
+    programs = [lowered(trace(each), model.available) for each in functions]
+    return all(step.operation in model.errors for each in programs for step in each.steps)
+
+
+def _rounded_box(arguments: TracedArguments) -> np.ndarray:
+    """Return the ends (sides, 2) of the domain, and of the domain with its ends in float32."""
+    ends = box_of(arguments.axes)
+    rounded = ends.astype(np.float32).astype(float)
+    return np.stack(
+        [np.minimum(ends[:, 0], rounded[:, 0]), np.maximum(ends[:, 1], rounded[:, 1])], axis=1
+    )
