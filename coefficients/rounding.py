@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from fitting.proofs.rounding_error import (
     RATIO,
     TracedArguments,
     bound_rounding,
-    has_model,
+    can_be_bounded,
 )
 from programs.bounding.largest import LargestValue, Report
 from programs.bounding.rounding_model import MODELS
@@ -26,7 +27,7 @@ class RoundingBounds:
     """What was found of the rounding error of an entry's code in float32.
 
     `found` has the bound in each model of `MODELS`, by its name; None where an operation has no
-    known error. `measured` is the largest difference from the float64 program at fixed points, with
+    known error, or the code is too long. `measured` is the largest difference from the float64 program at fixed points, with
     every operation rounded to nearest.
     """
 
@@ -35,7 +36,7 @@ class RoundingBounds:
     measured: float
 
     @property
-    def state(self) -> str:
+    def state(self) -> Literal["proven", "not proven"]:
         """Return 'proven' if there is a bound in IEEE arithmetic, else 'not proven'."""
         found = self.found["ieee"]
         return "not proven" if found is None or found.upper is None else "proven"
@@ -80,7 +81,7 @@ def certify_rounding(
     measured = difference(trial.emulated(np.float32), trial.form).largest
     found: dict[str, LargestValue | None] = dict.fromkeys(MODELS)
     for name in models:
-        if arguments is None or not has_model(functions, MODELS[name]):
+        if arguments is None or not can_be_bounded(functions, MODELS[name]):
             continue
         found[name] = bound_rounding(
             functions,

@@ -20,6 +20,8 @@ from programs.tracing.tracer import trace
 RATIO = 1.2
 # The search gives up after so many boxes: some minutes on one core.
 MAX_BOXES = 5_000_000
+# Longer code takes minutes to compile.
+_MOST_STEPS = 500
 
 
 @dataclass(frozen=True)
@@ -81,10 +83,11 @@ def bound_rounding(
     )
 
 
-def has_model(functions: Sequence[Function], model: RoundingModel) -> bool:
-    """Return whether the error of each operation of functions is known in a model."""
+def can_be_bounded(functions: Sequence[Function], model: RoundingModel) -> bool:
+    """Return whether a model has the error of each operation, and the search compiles soon."""
     programs = [lowered(trace(each), model.available) for each in functions]
-    return all(step.operation in model.errors for each in programs for step in each.steps)
+    steps = [step for each in programs for step in each.steps]
+    return len(steps) <= _MOST_STEPS and all(step.operation in model.errors for step in steps)
 
 
 def _rounded_box(arguments: TracedArguments) -> np.ndarray:

@@ -207,9 +207,8 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     form has no coefficients. Otherwise g = S + √(S² + T² + m₅c), where m₅ contains a polynomial in
     α and y = cos²θf of total degree `degree`.
 
-    A form with two steps is so precise that rounding to float32 would be seen. There q and σ² are
-    sums of positive numbers and S² − T² is a product. A step then is one quotient, which saves the
-    operations that σ² takes more.
+    With two steps the form is so precise that rounding would be seen. Then q and σ² are sums of
+    positive numbers, S² − T² is a product, and a step is one quotient, which saves what σ² costs.
     """
     precise = steps > 1
 
@@ -221,7 +220,8 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         square = alpha * alpha
         beta = 1 - alpha
         kappa = beta * (1 + alpha)
-        q = square + kappa * (s := jnp.sin(theta_f)) * s if precise else 1 - kappa * y
+        sine = jnp.sin(theta_f)
+        q = square + kappa * (sine * sine) if precise else 1 - kappa * y
         m = (kappa, square, kappa * b, q, jnp.sqrt(q))
         if degree < 0:
             return m
@@ -229,8 +229,7 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         return (*m, u * beta * square)
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        # notation: c, a, S, T, E and e as above, root is λ; the cubic is λ³ + (E + 2T) λ² + wλ − E,
-        # with w = T² − S².
+        # notation: as above, root is λ; the cubic is λ³ + bλ² ± wλ − E, with w = ±(T² − S²).
         c, a = cos_un, cos_ut
         sigma2 = m[1] + m[0] * ((1 - a) * (1 + a)) if precise else 1 - m[0] * a * a
         S = m[4] * jnp.sqrt(sigma2)
