@@ -82,7 +82,7 @@ def header_of(
             head["Half precision"] = _verdict(trial, values)
         if precision == "float":
             rounding = difference(values, trial.form).largest
-            head["Rounding to float adds"] = rounding_text(entry, rounding, len(values))
+            head["Rounding in float"] = rounding_text(entry, rounding, len(values))
     head["Cost"] = "; ".join(f"{n}: {cost_text(cost)}" for n, cost in costs(functions).items())
     beside = closed_form_beside(entry)
     if beside is not None:

@@ -74,8 +74,8 @@ def rounding_text(entry: Entry, measured: float, points: int) -> str:
     certificates = None if entry.table is None else entry.table.certificates
     known = None if certificates is None else certificates.float32_rounding
     said = [] if entry.kind == "file" or known is None else _proven_rounding(known)
-    proven = f"proven: {', '.join(said)}; " if said else ""
-    return f"{proven}measured: at most {rounded_up(measured, 2)} at {points} points"
+    proven = f"proven: {', '.join(said)} more error; " if said else ""
+    return f"{proven}measured: at most {rounded_up(measured, 2)} more error at {points} points"
 
 
 def _proven_rounding(known: Float32Rounding) -> list[str]:

@@ -27,8 +27,8 @@ class RoundingBounds:
     """What was found of the rounding error of an entry's code in float32.
 
     `found` has the bound in each model of `MODELS`, by its name; None where an operation has no
-    known error, or the code is too long. `measured` is the largest difference from the float64 program at fixed points, with
-    every operation rounded to nearest.
+    known error, or the code is too long. `measured` is the largest difference from the float64
+    program at fixed points, with every operation rounded to nearest.
     """
 
     entry: Entry

@@ -17,7 +17,7 @@ from programs.toolchains.process import ToolchainError
 from programs.tracing.tracer import trace
 
 # The bound and the largest value found of the sum that it bounds are at most this far apart.
-RATIO = 1.2
+RATIO = 1.5
 # The search gives up after so many boxes: some minutes on one core.
 MAX_BOXES = 5_000_000
 # Longer code takes minutes to compile.

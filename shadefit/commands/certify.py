@@ -26,7 +26,7 @@ def certify(
         float | None,
         typer.Option(
             help="Largest quotient of the proven bound and the largest error found; by default "
-            "1.01, with --rounding 1.2."
+            "1.01, with --rounding 1.5."
         ),
     ] = None,
     at_most: Annotated[
