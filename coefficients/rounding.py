@@ -12,7 +12,6 @@ from coefficients.table import Table
 from coefficients.table_parts import Float32Rounding, RoundingRecord
 from fitting.proofs.rounding_error import (
     MAX_BOXES,
-    RATIO,
     TracedArguments,
     bound_rounding,
     can_be_bounded,
@@ -63,7 +62,7 @@ def arguments_of(entry: Entry) -> TracedArguments | None:
 
 def certify_rounding(
     entry: Entry,
-    ratio: float = RATIO,
+    ratio: float | None = None,
     *,
     models: Sequence[str] = tuple(MODELS),
     threads: int = 2,

@@ -16,8 +16,9 @@ from programs.printing.lowering import lowered
 from programs.toolchains.process import ToolchainError
 from programs.tracing.tracer import trace
 
-# The bound and the largest value found of the sum that it bounds are at most this far apart.
-RATIO = 1.5
+# The bound and the largest value found of the sum that it bounds are at most this far apart, for
+# one or two variables and for more.
+RATIO, RATIO_OF_MANY = 1.2, 1.5
 # The search gives up after so many boxes: some minutes on one core.
 MAX_BOXES = 5_000_000
 # Longer code takes minutes to compile.
@@ -43,7 +44,7 @@ def bound_rounding(
     functions: Sequence[Function],
     arguments: TracedArguments,
     model: RoundingModel,
-    ratio: float = RATIO,
+    ratio: float | None = None,
     *,
     threads: int = 2,
     max_boxes: int = MAX_BOXES,
@@ -66,6 +67,8 @@ def bound_rounding(
     reason = compiler_missing()
     if reason is not None:
         raise ValueError(f"the proof needs a C compiler: {reason}")
+    if ratio is None:
+        ratio = RATIO if len(box) <= 2 else RATIO_OF_MANY
     count, names = len(arguments.rounded), tuple(f"x{k}" for k in range(len(box)))
     given = ", ".join(f"x[{k}]" for k in range(len(box)))
     if count != len(program.inputs):

@@ -135,6 +135,8 @@ def _plan(program: Program, model: RoundingModel) -> _Plan:
         ]
         for operand in inexact:
             constants.setdefault(operand, last + len(constants))
+        if OPERATIONS[step.operation].gives == "bool":
+            continue
         moves = inexact or any(is_value(o) and o in wanted for o in step.operands)
         if number in errors or moves:
             wanted.add(number)
@@ -224,7 +226,13 @@ def _body(plan: _Plan) -> list[str]:
             ]
         if error.absolute:
             lines.append(f"e = ADD(e, MUL({c_number(error.absolute)}, ABS(d{number})));")
-    used = {o for step in plan.program.steps for o in step.operands if not is_value(o)}
+    # A constant that is only compared with changes no value, but may change an outcome.
+    used = {
+        operand
+        for step in plan.program.steps
+        if OPERATIONS[step.operation].gives == "real"
+        for operand in step.operands
+    }
     for constant, number in plan.constants.items():
         if constant in used:
             apart = c_number(np.nextafter(abs(_float32(constant) - constant), np.inf))

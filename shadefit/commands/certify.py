@@ -26,7 +26,7 @@ def certify(
         float | None,
         typer.Option(
             help="Largest quotient of the proven bound and the largest error found; by default "
-            "1.01, with --rounding 1.5."
+            "1.01; with --rounding 1.2, and 1.5 for more than two variables."
         ),
     ] = None,
     at_most: Annotated[
@@ -97,14 +97,13 @@ def _round(
     """Prove what rounding adds to the errors of tables and closed forms."""
     from coefficients.certify import chosen
     from coefficients.files import write_whole
-    from coefficients.rounding import RATIO, certify_rounding, with_rounding
+    from coefficients.rounding import certify_rounding, with_rounding
     from coefficients.table import serialise
     from shadefit.outputs import CertifyOutput
     from shadefit.progress import stages
     from shadefit.terminal import print_json
 
     entries, done = chosen(tables, closed_forms=True), []
-    ratio = RATIO if upper_ratio is None else upper_ratio
     with stages() as progress:
         line = progress.begin("tables", total=len(entries))
         for entry in entries:
@@ -113,7 +112,7 @@ def _round(
             def report(standing, name: str = entry.name) -> None:
                 line.show(_standing(name, standing))
 
-            found = certify_rounding(entry, ratio, threads=threads, progress=report)
+            found = certify_rounding(entry, upper_ratio, threads=threads, progress=report)
             done.append(found)
             line.advance()
             certified = entry.table is not None and entry.table.certificates is not None
