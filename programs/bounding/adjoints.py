@@ -1,8 +1,12 @@
 """Derivatives of a program's output by all of its values, as C code in interval arithmetic.
 
 The code is in the macros of `kernel/jets.h`, `elementary.h` and `rounding.h`. The names p5 and v5
-stand for the exact and the rounded result of an operation with the number 5, d5 for the derivative
-of the output by v5.
+stand for the exact and the rounded result of an operation with the number 5, and d5 for the
+derivative of the output by v5.
+
+A compiler may fuse a product and a sum, so that the product is not rounded in this sum, but it is
+where it is used otherwise. So the rounding of a product that is used repeatedly is not the same
+everywhere. Then s5 stands for the sum of the magnitudes of the derivatives by its uses.
 """
 
 from collections.abc import Callable, Sequence
@@ -56,6 +60,7 @@ def derivative_lines(
     """
     first, lines = len(program.inputs), []
     parts: dict[int, list[str]] = {}
+    separate = used_separately(program)
     (output,) = program.outputs
     if is_value(output) and output in wanted:
         parts[output] = ["JET(1.0)"]
@@ -64,6 +69,8 @@ def derivative_lines(
             continue
         step = program.steps[number - first]
         lines += _total(number, parts.get(number, ["JET(0.0)"]))
+        if number in separate:
+            lines += _magnitudes(number, parts.get(number, []))
         if step.operation not in _RULES:
             raise ValueError(f"rounding of {step.operation!r} is not bounded")
         operands = _named(step.operands, leaf)
@@ -82,6 +89,29 @@ def _total(number: int, parts: Sequence[str]) -> list[str]:
     # The macros write their operands repeatedly, so that long sums would grow exponentially.
     name, more = f"d{number}", parts[1:]
     return [f"jet {name} = {parts[0]};", *(f"{name} = ADD({name}, {each});" for each in more)]
+
+
+def _magnitudes(number: int, parts: Sequence[str]) -> list[str]:
+    name = f"s{number}"
+    added = (f"{name} = ADD({name}, ABS(t{number}));" for _ in parts)
+    each = (f"t{number} = {part};" for part in parts)
+    pairs = [line for pair in zip(each, added, strict=True) for line in pair]
+    return [f"jet {name} = JET(0.0), t{number};", *pairs]
+
+
+def used_separately(program: Program) -> set[int]:
+    """List the products of which a sum may use the exact value, and something else another one."""
+    first, uses = len(program.inputs), dict[int, list[str]]()
+    for step in program.steps:
+        for operand in filter(is_value, step.operands):
+            uses.setdefault(operand, []).append(step.operation)
+    return {
+        number
+        for number, step in enumerate(program.steps, first)
+        if step.operation == "mul"
+        and len(uses.get(number, [])) > 1
+        and {"add", "sub"} & set(uses[number])
+    }
 
 
 def _named(operands: Sequence[Operand], leaf: Callable[[Operand], int | None]) -> list[str]:

@@ -13,7 +13,7 @@ by its possible rounding error, so that its interval contains all of these. Ther
 where pᵢ is the result of an operation, dᵢ the derivative of the output by it, and uᵢ the largest
 relative error of the operation. Nothing of higher order is left out. A result below the smallest
 normal number may become zero, which adds an absolute error. A product and a sum that are fused
-have one rounding error less, so the bound holds for them too.
+have one rounding error less, so the bound holds for them too (`adjoints.py`).
 
 Constants that float32 does not hold are rounded in printed code. The bound contains this: it is
 that of the difference from the program with its constants in float64.
@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-from programs.bounding.adjoints import c_number, derivative_lines, operand_name
+from programs.bounding.adjoints import c_number, derivative_lines, operand_name, used_separately
 from programs.bounding.rounding_model import ULP, OperationError, RoundingModel
 from programs.operations import OPERATIONS
 from programs.program import Operand, Program, Step, is_value
@@ -126,8 +126,8 @@ def _plan(program: Program, model: RoundingModel) -> _Plan:
                 f"model {model.name!r}"
             )
         error = model.errors[step.operation]
-        if not error.none and not _is_exact(step):
-            errors[number] = error
+        if not error.none:
+            errors[number] = OperationError() if _is_exact(step, error) else error
         inexact = [
             operand
             for operand in step.operands
@@ -148,14 +148,17 @@ def _float32(constant: Operand) -> float:
         return float(np.float32(constant))
 
 
-def _is_exact(step: Step) -> bool:
-    """Return whether a step only changes the exponent: x + x, or a product with a power of two."""
+def _is_exact(step: Step, error: OperationError) -> bool:
+    """Return whether a step only changes the exponent: x + x, or a product with a power of two.
+
+    The result may still be too small for a normal number.
+    """
     if step.operation == "add":
-        return step.operands[0] == step.operands[1] and is_value(step.operands[0])
-    numbers = [operand for operand in step.operands if not is_value(operand)]
-    if step.operation == "mul" or (step.operation == "div" and not is_value(step.operands[1])):
-        return bool(numbers) and abs(frexp(numbers[-1])[0]) == 0.5
-    return False
+        return is_value(step.operands[0]) and step.operands[0] == step.operands[1]
+    # A product that float32 holds is exact in each model; a quotient is where it is rounded right.
+    divisor = step.operation == "div" and error.ulps <= 0.5
+    scales = step.operands[1:] if divisor else step.operands if step.operation == "mul" else ()
+    return any(not is_value(each) and abs(frexp(each)[0]) == 0.5 for each in scales)
 
 
 def _inputs(plan: _Plan, arguments: str, rounded_inputs: Sequence[bool]) -> list[str]:
@@ -208,12 +211,13 @@ def _body(plan: _Plan) -> list[str]:
     """Write the bound: the sum of the errors of all operations, times the derivatives by them."""
     lines = [*_values(plan), *derivative_lines(plan.program, plan.wanted, plan.leaf)]
     lines += ["jet e = JET(0.0);", "V tiny = all(0);"]
-    first = len(plan.program.inputs)
+    first, separate = len(plan.program.inputs), used_separately(plan.program)
     for part in sorted({error.ulps for error in plan.errors.values() if error.ulps}):
         lines.append("{ jet s = JET(0.0);")
         for number, error in plan.errors.items():
             if error.ulps == part:
-                lines.append(f"s = ADD(s, ABS(MUL(d{number}, p{number})));")
+                d = f"s{number}" if number in separate else f"d{number}"
+                lines.append(f"s = ADD(s, ABS(MUL({d}, p{number})));")
         lines.append(f"e = ADD(e, MUL({c_number(part * ULP)}, s)); }}")
     for number, error in plan.errors.items():
         lines.append(f"tiny += size_of(d{number});")

@@ -7,8 +7,6 @@ times the result, and half of it is what an operation that rounds to nearest is 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from programs.languages import language
-
 # One unit in the last place, over the number
 ULP = 2.0**-23
 
@@ -31,19 +29,12 @@ class OperationError:
 class RoundingModel:
     """The errors of all operations. An operation that is not in `errors` has no known bound.
 
-    `arithmetic` is a text for headers. `language` is the key of a language with this arithmetic: it
-    decides which operations are written by others, as when code is printed.
+    `arithmetic` is a text for headers.
     """
 
     name: str
     arithmetic: str
-    language: str
     errors: Mapping[str, OperationError]
-
-    @property
-    def available(self) -> set[str]:
-        """The operations that printed code has without a rule that writes them by others."""
-        return set(language(self.language).functions["float"])
 
 
 _EXACT = dict.fromkeys(
@@ -64,7 +55,6 @@ _LIBRARY = {
 IEEE = RoundingModel(
     "ieee",
     "IEEE 754 arithmetic, functions within 1 ULP",
-    "c",
     {**_EXACT, **_NEAREST, "rsqrt": OperationError(1.0), **_LIBRARY},
 )
 # The table "Precision of core SPIR-V instructions" of the Vulkan specification. Sums and products
@@ -74,7 +64,6 @@ IEEE = RoundingModel(
 VULKAN = RoundingModel(
     "vulkan",
     "what Vulkan allows",
-    "glsl",
     {
         **_EXACT,
         **dict.fromkeys(("add", "sub", "mul"), OperationError(1.0)),
