@@ -7,7 +7,7 @@ import numpy as np
 
 from coefficients.catalogue import EXACT, Entry, resolve
 from coefficients.code_equation import code_equation
-from coefficients.proof_text import proofs
+from coefficients.proof_text import proofs, rounding_text
 from fitting import judge
 from programs import (
     KINDS,
@@ -78,6 +78,9 @@ def header_of(
             )
         if precision == "half":
             head["Half precision"] = _verdict(trial, values)
+        if precision == "float":
+            rounding = difference(values, trial.form).largest
+            head["Rounding in float"] = rounding_text(entry, rounding, len(values))
     head["Cost"] = "; ".join(f"{n}: {cost_text(cost)}" for n, cost in costs(functions).items())
     beside = closed_form_beside(entry)
     if beside is not None:

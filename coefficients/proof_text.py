@@ -3,11 +3,12 @@
 import math
 
 from coefficients.catalogue import Entry
-from coefficients.table_parts import Certificates
+from coefficients.table_parts import Certificates, Float32Rounding
 from fitting import FittedForm
 from fitting.fit import ENOUGH
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
+from programs.bounding.rounding_model import MODELS
 from programs.rounded_text import rounded_down, rounded_up
 
 # The ends of a range are written with four decimals.
@@ -66,3 +67,20 @@ def proof_text(certificates: Certificates | None) -> list[str]:
         least = rounded_down(certificates.least_error, 3)
         found.append(f"no coefficients have a largest error below {least}")
     return found
+
+
+def rounding_text(entry: Entry, measured: float, points: int) -> str:
+    """Say what rounding to float32 adds to errors: what is proven, and what was measured."""
+    certificates = None if entry.table is None else entry.table.certificates
+    known = None if certificates is None else certificates.float32_rounding
+    said = [] if entry.kind == "file" or known is None else _proven_rounding(known)
+    proven = f"proven: {', '.join(said)} more error; " if said else ""
+    return f"{proven}measured: at most {rounded_up(measured, 2)} more error at {points} points"
+
+
+def _proven_rounding(known: Float32Rounding) -> list[str]:
+    return [
+        f"at most {rounded_up(record.upper, 2)} ({model.arithmetic})"
+        for name, model in MODELS.items()
+        if (record := getattr(known, name)) is not None
+    ]

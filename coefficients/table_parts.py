@@ -196,6 +196,24 @@ class LocalOptimalityRecord(Part):
     extrema: Annotated[int, Field(ge=1)]
 
 
+class RoundingRecord(Part):
+    """A proven bound of a rounding error, and the number of boxes of the proof."""
+
+    upper: Positive
+    boxes: Annotated[int, Field(ge=1)]
+
+
+class Float32Rounding(Part):
+    """What float32 rounding adds at most to the error of the exported functions (docs/certify.md).
+
+    `ieee` is for IEEE 754 arithmetic and functions that are within one unit in the last place,
+    `vulkan` for the errors that the Vulkan specification allows. What is missing is not proven.
+    """
+
+    ieee: RoundingRecord | None = None
+    vulkan: RoundingRecord | None = None
+
+
 class Certificates(Part):
     """What is proven on the whole domain, by branch and bound over a number of boxes.
 
@@ -204,8 +222,9 @@ class Certificates(Part):
     the proof; without a range this is not proven. No coefficients of the form have a largest error
     below `least_error`. If `conservative_bound` is positive, no value is above the exact one: it is
     a lower bound of a quantity that would be negative there (quantities/fuzz/velvet_form.py).
-    Without `largest_error`, the largest error is measured only. `local_optimality` is for a form
-    that has no `least_error`. It is no proof.
+    Without `largest_error`, the largest error is measured only, and so is the rounding of exported
+    code without `float32_rounding`. `local_optimality` is for a form that has no `least_error`. It
+    is no proof.
     """
 
     denominator_bound: Positive | None = None
@@ -215,6 +234,7 @@ class Certificates(Part):
     local_optimality: LocalOptimalityRecord | None = None
     conservative_bound: Number | None = None
     largest_error: LargestErrorRecord | None = None
+    float32_rounding: Float32Rounding | None = None
 
     @model_validator(mode="after")
     def _ordered(self):

@@ -65,11 +65,13 @@ class Proofs:
     * `quotient`: takes the fitted form, and returns one with the same values that is a quotient of
       linear functions of its coefficients, and whose form contains this one. A lower bound of its
       largest error is one of this form's. None: there is no such form, or it is this one.
+    * `inputs`: maps a point of `axes` to the arguments of the second stage. None: `Form.inputs`.
     * `first_split`: the number of pieces into which branch and bound divides the first axes before
       it begins.
     """
 
     axes: tuple[Axis, ...] | None = None
+    inputs: Callable[..., tuple[Array, ...]] | None = None
     value: Callable[..., Array] | None = None
     margins: Callable[..., tuple[Array, ...]] | None = None
     positive: Callable[..., Array] | None = None

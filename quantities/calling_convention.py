@@ -16,6 +16,7 @@ import numpy as np
 from jax.ad_checkpoint import checkpoint_name
 
 from fitting.form import FittedForm, Form
+from fitting.proofs.rounding_error import TracedArguments
 from integrals.reference import Axis
 from programs.functions import Function, Parameter, Record, function
 
@@ -101,6 +102,23 @@ class CallingConvention:
             return (first,)
         assert self.columns is not None
         return first, self.columns(points)
+
+    def traced_arguments(self, fitted: FittedForm) -> TracedArguments:
+        """Return the same as a JAX function, with angles, of the variables of the form's proofs."""
+        form = fitted.form
+        order = [self._place(fitted, argument) for argument in self.arguments]
+        if form.inputs is None:
+            return TracedArguments(
+                form.axes, lambda *point: tuple(point[k] for k in order), (False,) * len(order)
+            )
+        inputs = form.proofs.inputs or form.inputs
+
+        def call(*point):
+            return (*(point[k] for k in order), *inputs(*point))
+
+        rounded = (*(False for _ in order), *(True for _ in self.second))
+        axes = form.axes if form.proofs.inputs is None else form.proofs.axes or form.axes
+        return TracedArguments(axes, call, rounded)
 
     def with_cosines(self, columns: Points) -> Points:
         """Replace angles among the arguments (n, …) by their cosines, if the code takes these."""

@@ -13,6 +13,7 @@ from fitting.form import FittedForm, Form
 from fitting.points.scattered import scattered_points
 from fitting.proofs.counterexamples import counterexamples
 from fitting.proofs.largest_error import ErrorCode, difference_code
+from fitting.proofs.rounding_error import TracedArguments
 from fitting.solvers.elsewhere import Counterexamples
 from integrals.reference import Axis, Reference, restricted
 from programs.functions import Function, Record
@@ -37,6 +38,7 @@ class ExactCode:
       structure between them, and whether cosines stand for angles, to the functions. None: the
       quantity has no such forms.
     * `left`: a text for the header, which says what error remains in exact arithmetic.
+    * `traced`: the same as `arguments_at` for proofs, as a JAX function; None: there are none.
     """
 
     equation: str
@@ -46,6 +48,7 @@ class ExactCode:
     remark: str | None = None
     left: str = "none but the rounding of float64"
     staged: Callable[[str, Record, bool], tuple[Function, ...]] | None = None
+    traced: TracedArguments | None = None
 
 
 @dataclass(frozen=True)

@@ -180,15 +180,28 @@ class LargestErrorRecord(Part):
     boxes: Count
 
 
+class RoundingRecord(Part):
+    """What float32 rounding adds to the error of exported code, at most.
+
+    `upper` has the proven bounds by the name of the model of arithmetic; null if there is none.
+    `measured` is the largest that was found at fixed points, in IEEE 754 arithmetic.
+    """
+
+    upper: dict[str, Size | None]
+    measured: Size
+
+
 class CertifiedTable(TableRecord):
     """A table with what is proven of its largest error; null if there is no closed form.
 
     It is `understated` if an error was found that is clearly above the one that the table states.
+    With --rounding, `rounding` is proven instead.
     """
 
     state: Literal["proven", "refuted", "not proven", "sampled"]
     largest_error: LargestErrorRecord | None
     understated: bool
+    rounding: RoundingRecord | None = None
 
 
 class ThroughputRecord(Part):

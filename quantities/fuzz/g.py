@@ -1,6 +1,7 @@
 """The quantity G: the average over lights of what the layer scatters to the view."""
 
 import integrals
+from fitting.proofs.rounding_error import TracedArguments
 from integrals.fuzz.g import ambient_scattering
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention, clamped
@@ -67,6 +68,7 @@ G = Problem(
         exact_functions,
         lambda points: (points[:, ::-1],),
         "NdotV = v·n of the view's direction v; clamps NdotV to the domain",
+        traced=TracedArguments(AXES, lambda d, nu: (nu, d), (False, False)),
     ),
     plot=PlotHints(
         {

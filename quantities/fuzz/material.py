@@ -58,11 +58,11 @@ def material_form(
     axes = restricted(PS.axes, alpha=(least_alpha, 1.0))
 
     def value(c, alpha, theta_f, theta_u, cos_phi):
-        cosines = _bounded_cosines(theta_f, theta_u, cos_phi)
+        cosines = bounded_cosines(theta_f, theta_u, cos_phi)
         return proofs.value(material(c, alpha, theta_f), *cosines)
 
     def margins(c, alpha, theta_f, theta_u, cos_phi):
-        cosines = _bounded_cosines(theta_f, theta_u, cos_phi)
+        cosines = bounded_cosines(theta_f, theta_u, cos_phi)
         return proofs.margins(material(c, alpha, theta_f), jnp.cos(theta_f), *cosines)
 
     def positive(c, alpha, theta_f, theta_u, phi):
@@ -94,6 +94,7 @@ def material_form(
         shape=shape,
         proofs=Proofs(
             axes=(*axes[:3], COS_PHI),
+            inputs=lambda _, *angles: bounded_cosines(*angles),
             value=value,
             margins=margins,
             positive=positive,
@@ -102,7 +103,7 @@ def material_form(
     )
 
 
-def _bounded_cosines(theta_f, theta_u, cos_phi) -> tuple[Array, Array]:
+def bounded_cosines(theta_f, theta_u, cos_phi) -> tuple[Array, Array]:
     """Return u·n and u·t for a proof, u·t limited to [−1, 1].
 
     The limit changes no value, but interval arithmetic alone would not find it.

@@ -4,12 +4,14 @@ import jax.numpy as jnp
 import numpy as np
 
 import integrals
+from fitting.proofs.rounding_error import TracedArguments
 from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
 from integrals.reference import restricted
 from programs.functions import Function, Parameter, Record, function
 from quantities.calling_convention import MATERIAL, Argument, CallingConvention, clamped
 from quantities.family import Family
 from quantities.fuzz.lights import cosines_at
+from quantities.fuzz.material import COS_PHI, bounded_cosines
 from quantities.fuzz.ps_error import error_code
 from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_ps, two_root_ps
 from quantities.fuzz.supplement import RATIONAL_PS
@@ -83,6 +85,11 @@ def staged_exact_functions(
     )
 
 
+def _cosines_of_proof(alpha, theta_f, theta_u, cos_phi):
+    """Return the arguments of the closed form, of the variables of proofs."""
+    return (*bounded_cosines(theta_f, theta_u, cos_phi), jnp.cos(theta_f), alpha)
+
+
 def _fraction(cos_un, cos_ut, cos_nt, alpha, precision: str):
     """Return P_s in closed form for u·n and u·t that are not clamped yet."""
     steps = FLOAT64_STEPS if precision == "double" else FLOAT32_STEPS
@@ -138,6 +145,11 @@ PS = Problem(
         "so that NdotT >= 0",
         "none but what the root's steps leave",
         staged_exact_functions,
+        TracedArguments(
+            (*restricted(integrals.PS.axes[:3], alpha=(LEAST_EXACT_ALPHA, 1.0)), COS_PHI),
+            _cosines_of_proof,
+            (True, True, True, False),
+        ),
     ),
     plot=PlotHints(
         {

@@ -181,6 +181,16 @@ def two_root_ps(*, terms: int, degree: int, least_alpha: float) -> Form:
     )
 
 
+def _improved(root: Array, b: Array, w: Array, E: Array, steps: int) -> Array:
+    """Improve the root of λ³ + bλ² − wλ = E by Newton steps, each of them one quotient."""
+    for _ in range(steps):
+        product = (root + b) * root
+        rising = root * root + product
+        slope = jnp.maximum(rising + (product - w), LEAST)
+        root = jnp.maximum((rising * root + E) / slope, LEAST)
+    return root
+
+
 @functools.cache
 def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     """Return the closed form with an approximate root λ of the cubic.
@@ -190,7 +200,11 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
     is the first λ, and `steps` Newton steps follow. If `degree` is −1, g = S + max(S, T), and the
     form has no coefficients. Otherwise g = S + √(S² + T² + m₅c), where m₅ contains a polynomial in
     α and y = cos²θf of total degree `degree`.
+
+    With two steps the form is so precise that rounding would be seen. Then q and σ² are sums of
+    positive numbers, S² − T² is a product, and a step is one quotient, which saves what σ² costs.
     """
+    precise = steps > 1
 
     def material(coefficients, alpha: Scalar, theta_f: Scalar) -> tuple[Array, ...]:
         """Return κ, α², κb, q, √q, and m₅ if the form has it."""
@@ -200,7 +214,8 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         square = alpha * alpha
         beta = 1 - alpha
         kappa = beta * (1 + alpha)
-        q = 1 - kappa * y
+        sine = jnp.sin(theta_f)
+        q = square + kappa * (sine * sine) if precise else 1 - kappa * y
         m = (kappa, square, kappa * b, q, jnp.sqrt(q))
         if degree < 0:
             return m
@@ -208,10 +223,9 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         return (*m, u * beta * square)
 
     def along(m: tuple, cos_un: Scalar, cos_ut: Scalar) -> Array:
-        # notation: c, a, S, T, E and e as above, root is λ; the cubic is λ³ + (E + 2T) λ² + wλ − E,
-        # with w = T² − S².
+        # notation: as above, root is λ; the cubic is λ³ + bλ² ± wλ − E, with w = ±(T² − S²).
         c, a = cos_un, cos_ut
-        sigma2 = 1 - m[0] * a * a
+        sigma2 = m[1] + m[0] * ((1 - a) * (1 + a)) if precise else 1 - m[0] * a * a
         S = m[4] * jnp.sqrt(sigma2)
         T = m[2] * a
         E = m[1] * c
@@ -221,7 +235,14 @@ def cubic_ps(*, steps: int, degree: int, least_alpha: float) -> Form:
         h = (S - T) * (0.5 - 0.5 * e)
         root = jnp.maximum(h + jnp.sqrt(h * h + e), LEAST)
         ellipse = None
-        if steps:
+        if precise:
+            p = S - T
+            r = S + T
+            b = E + (r - p)
+            w = p * r
+            root = _improved(root, b, w, E, steps)
+            ellipse = 3 * root + (b + b) - w / root
+        elif steps:
             b = E + T + T
             w = (1 - sigma2) - m[3]
             for _ in range(steps):

@@ -6,6 +6,7 @@ import numpy as np
 import integrals
 from fitting.form import FittedForm
 from fitting.proofs.largest_error import ErrorCode, difference_code
+from fitting.proofs.rounding_error import TracedArguments
 from integrals.fuzz.q import average_penetration
 from integrals.special.exponential import ein
 from programs.functions import Function, Parameter, function
@@ -71,6 +72,7 @@ Q = Problem(
         exact_functions,
         lambda points: (points,),
         "density is thickness over mean free path",
+        traced=TracedArguments(AXES, lambda d: (d,), (False,)),
     ),
     plot=PlotHints(
         {"density": AxisHint("density $d$", 0.0, 0.5, 0.2, explored=(0.001, 1.0))},

@@ -1,6 +1,7 @@
 """The quantity r(k): the largest factor of the velvet phase function that creates no energy."""
 
 import integrals
+from fitting.proofs.rounding_error import TracedArguments
 from integrals.fuzz.velvet import normalisation
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import Argument, CallingConvention, clamped
@@ -36,7 +37,14 @@ VELVET = Problem(
         remark=_REMARK,
     ),
     closed_form=normalisation,
-    exact_code=ExactCode(_CLOSED_FORM, AXES, exact_functions, lambda points: (points,), _REMARK),
+    exact_code=ExactCode(
+        _CLOSED_FORM,
+        AXES,
+        exact_functions,
+        lambda points: (points,),
+        _REMARK,
+        traced=TracedArguments(AXES, lambda k: (k,), (False,)),
+    ),
     plot=PlotHints(
         {"asymmetry": AxisHint("asymmetry $k$", -0.95, 0.0, -0.5)},
         values=(0.0, 1.0),

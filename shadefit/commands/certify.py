@@ -1,4 +1,4 @@
-"""`shadefit certify`: prove the largest errors of tables on their whole domains."""
+"""`shadefit certify`: prove the largest errors of tables, or the rounding of their code."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,6 +10,7 @@ from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
     from coefficients.certify import Certification
+    from coefficients.rounding import RoundingBounds
     from shadefit.records import CertifiedTable
 
 
@@ -22,13 +23,22 @@ def certify(
         ),
     ],
     upper_ratio: Annotated[
-        float,
-        typer.Option(help="Largest quotient of the proven bound and the largest error found."),
-    ] = 1.01,
+        float | None,
+        typer.Option(
+            help="Largest quotient of the proven bound and the largest error found; by default "
+            "1.01; with --rounding 1.2, and 1.5 for more than two variables."
+        ),
+    ] = None,
     at_most: Annotated[
         float | None,
         typer.Option(help="Prove that no error is above this, or find a point where one is."),
     ] = None,
+    rounding: Annotated[
+        bool,
+        typer.Option(
+            "--rounding", help="Prove what rounding to float32 adds to the error of exported code."
+        ),
+    ] = False,
     threads: Annotated[int, typer.Option(min=1, help="Threads of the search.")] = 2,
     out: Annotated[
         Path | None,
@@ -39,10 +49,11 @@ def certify(
     """Prove a bound of the largest error of tables on their whole domains.
 
     This needs a C compiler and a closed form of the exact value; other quantities are 'sampled'.
-    The exit status is 1 if something that has a closed form is refuted or not proven.
+    The exit status is 1 if something that has a closed form is refuted or not proven. With
+    --rounding, no closed form is needed, and exact/NAME is allowed too.
     """
+    from coefficients.certify import RATIO, chosen, with_largest_error
     from coefficients.certify import certify as certify_entry
-    from coefficients.certify import chosen, with_largest_error
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
     from shadefit.outputs import CertifyOutput
@@ -51,10 +62,14 @@ def certify(
 
     if at_most is not None and not at_most > 0:
         raise ValueError(f"--at-most {at_most:g}: allowed is a positive number")
+    if at_most is not None and rounding:
+        raise ValueError("--at-most with --rounding: allowed is one of them")
     if out is not None:
         require_writable(out)
+    if rounding:
+        return _round(tables, upper_ratio, threads, out, json)
     done: list[Certification] = []
-    entries = chosen(tables)
+    entries, ratio = chosen(tables), RATIO if upper_ratio is None else upper_ratio
     with stages() as progress:
         line = progress.begin("tables", total=len(entries))
         for entry in entries:
@@ -63,9 +78,7 @@ def certify(
             def report(standing, name: str = entry.name) -> None:
                 line.show(_standing(name, standing))
 
-            found = certify_entry(
-                entry, upper_ratio, claim=at_most, threads=threads, progress=report
-            )
+            found = certify_entry(entry, ratio, claim=at_most, threads=threads, progress=report)
             done.append(found)
             line.advance()
             if out is not None and found.state == "proven":
@@ -76,6 +89,81 @@ def certify(
     else:
         _print(done)
     return 1 if any(each.state in ("refuted", "not proven") for each in done) else 0
+
+
+def _round(
+    tables: list[str], upper_ratio: float | None, threads: int, out: Path | None, json: bool
+) -> int:
+    """Prove what rounding adds to the errors of tables and closed forms."""
+    from coefficients.certify import chosen
+    from coefficients.files import write_whole
+    from coefficients.rounding import certify_rounding, with_rounding
+    from coefficients.table import serialise
+    from shadefit.outputs import CertifyOutput
+    from shadefit.progress import stages
+    from shadefit.terminal import print_json
+
+    entries, done = chosen(tables, closed_forms=True), []
+    with stages() as progress:
+        line = progress.begin("tables", total=len(entries))
+        for entry in entries:
+            line.show(f"{entry.name}: compiling the search")
+
+            def report(standing, name: str = entry.name) -> None:
+                line.show(_standing(name, standing))
+
+            found = certify_rounding(entry, upper_ratio, threads=threads, progress=report)
+            done.append(found)
+            line.advance()
+            certified = entry.table is not None and entry.table.certificates is not None
+            if out is not None and certified and found.state == "proven":
+                text = serialise(with_rounding(found))
+                write_whole(out / f"{entry.require_table().name}.json", text)
+    if json:
+        print_json(CertifyOutput(tables=[_rounding_record(each) for each in done]))
+    else:
+        _print_rounding(done)
+    return 1 if any(each.state == "not proven" for each in done) else 0
+
+
+def _rounding_record(each: "RoundingBounds") -> "CertifiedTable":
+    from shadefit.commands.table_records import entry_fields
+    from shadefit.records import CertifiedTable, RoundingRecord
+
+    upper = {name: None if found is None else found.upper for name, found in each.found.items()}
+    return CertifiedTable(
+        **entry_fields(each.entry),
+        state=each.state,
+        largest_error=None,
+        understated=False,
+        rounding=RoundingRecord(upper=upper, measured=each.measured),
+    )
+
+
+def _print_rounding(done: "list[RoundingBounds]") -> None:
+    from programs.bounding.rounding_model import MODELS
+    from programs.rounded_text import rounded_up
+    from shadefit.terminal import print_table
+
+    def bound(found) -> str:
+        return "—" if found is None or found.upper is None else rounded_up(found.upper, 3)
+
+    print_table(
+        "What rounding to float32 adds to errors on the whole domain",
+        ["table", "state", *(f"at most: {name}" for name in MODELS), "measured", "boxes"],
+        [
+            [
+                each.entry.name,
+                each.state,
+                *(bound(found) for found in each.found.values()),
+                rounded_up(each.measured, 3),
+                f"{sum(found.boxes for found in each.found.values() if found):,}",
+            ]
+            for each in done
+        ],
+        "; ".join(f"{name}: {model.arithmetic}" for name, model in MODELS.items())
+        + ". measured: the largest at fixed points, every operation rounded to nearest.",
+    )
 
 
 def _standing(name: str, standing) -> str:

@@ -4,13 +4,16 @@ import functools
 import itertools
 
 import jax.numpy as jnp
+import mpmath
 import numpy as np
 import pytest
 
 from fitting.form import traced
 from fitting.points.scattered import scattered_points
 from integrals import PS
-from programs import evaluate
+from programs import evaluate, trace
+from programs.bounding.rounding import joined
+from quantities.fuzz.ps import PS as PROBLEM
 from quantities.fuzz.ps_forms import cubic_ps, one_root_ps, two_root_ps
 
 FORMS = {
@@ -65,6 +68,52 @@ def test_steps_of_the_cubics_root_end_at_the_closed_form():
     assert largest[0] > 1e-4
     assert all(after < 0.1 * before for before, after in itertools.pairwise(largest[:3]))
     assert largest[3] < 1e-9
+
+
+def two_steps(alpha, theta_f, theta_u, phi):
+    """The form with two steps and no coefficients as its docstring defines it, in mpmath."""
+    cos, sin, sqrt = mpmath.cos, mpmath.sin, mpmath.sqrt
+    b, c = cos(theta_f), cos(theta_u)
+    a = sin(theta_f) * sin(theta_u) * cos(phi) + b * c
+    kappa = 1 - alpha**2
+    sigma2, T, E = 1 - kappa * a * a, kappa * a * b, alpha**2 * c
+    S = sqrt(sigma2 * (1 - kappa * b * b))
+    e = E / (S + max(S, T) + E)
+    h = (S - T) * (1 - e) / 2
+    root = h + sqrt(h * h + e)
+    for _ in range(2):
+        f = root * (root - S + T) * (root + S + T) - E * (1 - root**2)
+        root -= f / (3 * root**2 + 2 * (E + 2 * T) * root + T**2 - S**2)
+    below = ((root + T) ** 2 - S**2) / root + 2 * (root + T + E)
+    return 1 - sqrt((root + c) * (root + E / sigma2)) / below
+
+
+def test_the_form_of_two_steps_is_computed_without_cancellation():
+    """It is the same function as before, and float32 moves its values by less than 1e-6.
+
+    With one step, where σ² and q are differences, it moves them by more than 2e-6.
+    """
+    precise, plain = (
+        cubic_ps(steps=steps, degree=-1, least_alpha=0.05).fitted(np.zeros(0)) for steps in (2, 1)
+    )
+    points = scattered_points(PS, precise.axes, 12, 3)
+    with mpmath.workdps(30):
+        exact = [float(two_steps(*map(mpmath.mpf, map(float, each)))) for each in points[:200]]
+    np.testing.assert_allclose(values(precise, points[:200]), exact, rtol=2e-14)
+    # θf is small and the light is near grazing, where rounding moves values most.
+    rng = np.random.default_rng(2)
+    low, high = np.array([0.05, 0.005, 1.45, 0.0]), np.array([0.06, 0.04, np.pi / 2, 1.0])
+    moved = [_moved(each, rng.uniform(low, high, (40_000, 4))) for each in (precise, plain)]
+    assert moved[0] < 1e-6 and moved[1] > 2e-6
+
+
+def _moved(fitted, points) -> float:
+    """Return how far rounding to float32 moves values of the exported functions at most."""
+    programs = [trace(each) for each in PROBLEM.calling.functions(fitted)]
+    columns = PROBLEM.calling.arguments_at(fitted, points)
+    both, inputs = joined(programs), np.concatenate(columns, axis=1).astype(np.float32)
+    single = evaluate(both, inputs, np.float32).astype(float)
+    return float(np.abs(single - evaluate(both, inputs.astype(float))).max())
 
 
 # Forms, and how far coefficients are from zero to give values in and out of [0, 1].

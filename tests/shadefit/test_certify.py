@@ -38,6 +38,22 @@ def test_tables_are_proven_printed_and_written(capsys, tmp_path, monkeypatch):
 
 
 @needs_compiler
+def test_the_rounding_of_code_is_proven_printed_and_written(capsys, tmp_path):
+    status, out, _ = run(
+        capsys, "certify", "best/q-4", "--rounding", "--json", "--out", str(tmp_path)
+    )
+    assert status == 0
+    (found,) = json.loads(out)["tables"]
+    assert (found["state"], found["largest_error"]) == ("proven", None)
+    rounding = found["rounding"]
+    assert 0 < rounding["measured"] < rounding["upper"]["ieee"] < rounding["upper"]["vulkan"] < 1e-6
+    record = read(tmp_path / "q-4.json").certificates.float32_rounding
+    assert record.ieee.upper == rounding["upper"]["ieee"]
+    status, out, _ = run(capsys, "certify", "exact/g", "--rounding")
+    assert status == 1 and "not proven" in out
+
+
+@needs_compiler
 def test_a_claim_that_is_wrong_is_refuted(capsys):
     status, out, _ = run(capsys, "certify", "best/q-4", "--at-most", "6.9e-4", "--json")
     assert status == 1
@@ -54,6 +70,7 @@ def test_a_claim_that_is_wrong_is_refuted(capsys):
         (("best/q-4", "--upper-ratio", "1"), "upper ratio 1: allowed is a number above 1"),
         (("best/q-4", "--at-most", "-1"), "--at-most -1: allowed is a positive number"),
         (("exact/q",), "exact/q has no coefficients"),
+        (("best/q-4", "--rounding", "--at-most", "1"), "--at-most with --rounding"),
         (("nothing",), "no table is called 'nothing'"),
         (("best/q-4", "--threads", "0"), "--threads"),
     ],

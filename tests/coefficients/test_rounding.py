@@ -1,0 +1,71 @@
+"""Rounding of exported code: the proven bounds, and the compiled code itself."""
+
+import numpy as np
+import pytest
+
+from coefficients.catalogue import resolve
+from coefficients.exported_code import trial_of
+from coefficients.proof_text import rounding_text
+from coefficients.rounding import arguments_of, certify_rounding, with_rounding
+from coefficients.table import parse, serialise
+from programs import write_source
+from programs.bounding.compiled import compiler_missing
+from programs.toolchains.difference import difference
+from programs.toolchains.verification import run_code
+
+pytestmark = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
+
+QUICK = ["best/q-9", "best/g-17"]
+SLOW = ["velvet", "best/r-25", "best/ps-11", "q", "g", "r"]
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(n, marks=pytest.mark.slow) for n in SLOW)])
+def test_the_compiled_code_keeps_the_bound_and_comes_near_it(name):
+    entry = resolve(name)
+    found = certify_rounding(entry, models=["ieee"])
+    trial = trial_of(entry, "float")
+    values = run_code(trial, "c", write_source(trial.calls.functions, "c"))
+    largest = max(difference(values, trial.form).largest, found.measured)
+    upper = found.found["ieee"].upper
+    assert found.state == "proven" and largest <= upper <= 10 * largest
+
+
+def test_bounds_are_written_and_stated():
+    found = certify_rounding(resolve("best/q-4"))
+    table = parse(serialise(with_rounding(found)), "q-4")
+    record = table.certificates.float32_rounding
+    assert record.ieee.upper == found.found["ieee"].upper < record.vulkan.upper
+    changed = resolve("best/q-4")
+    object.__setattr__(changed, "table", table)
+    text = rounding_text(changed, 1.23e-7, 1000)
+    assert text.startswith("proven: at most 2.2e-07 (IEEE 754 arithmetic")
+    assert text.endswith("measured: at most 1.3e-07 more error at 1000 points")
+
+
+def test_a_published_table_has_no_certificates_to_write():
+    found = certify_rounding(resolve("published/q"), models=["ieee"])
+    assert found.state == "proven"
+    with pytest.raises(ValueError, match="published/q is published"):
+        with_rounding(found)
+
+
+def test_long_code_is_not_proven_but_measured():
+    found = certify_rounding(resolve("exact/g"))
+    assert found.state == "not proven" and found.found == {"ieee": None, "vulkan": None}
+    assert 0 < found.measured < 1e-5
+    with pytest.raises(ValueError, match="has no coefficients"):
+        with_rounding(found)
+
+
+@pytest.mark.slow
+def test_arguments_of_proofs_are_those_of_the_code():
+    """At a point of the variables, they are what the code is verified with."""
+    for name in ("best/ps-11", "exact/ps", "exact/g", "best/r-25"):
+        entry = resolve(name)
+        given = arguments_of(entry)
+        points = np.stack([axis.place(0.3) for axis in entry.axes])[None]
+        own = [float(axis.place(0.3)) for axis in entry.axes]
+        if name.endswith(("ps", "ps-11")):
+            points[0, 3], own[3] = 2.0, np.cos(2.0)
+        expected = np.concatenate(entry.arguments_at(points), axis=1)[0]
+        np.testing.assert_allclose([float(x) for x in given.call(*own)], expected, atol=1e-15)
