@@ -1,0 +1,1 @@
+"""Microfacet surfaces: GGX, and the sampling of its visible normals."""

@@ -1,0 +1,128 @@
+"""The cone of the microfacet normals of GGX that reflect a direction into the upper hemisphere.
+
+The normals of GGX are those of an ellipsoid. M = diag(αx, αy, 1) maps unit vectors p to normals
+m = Mp/|Mp|. For a given direction o, the reflection i of o about m has i·n = pᵀCp/|Mp|² with the
+symmetric matrix
+
+    C = ⎡ −αx²μ    0      αx·ox ⎤
+        ⎢   0    −αy²μ    αy·oy ⎥        μ = o·n.
+        ⎣ αx·ox  αy·oy      μ   ⎦
+
+So i is above the horizon if and only if p is inside the cone pᵀCp > 0. For μ ≥ 0, C has one
+positive eigenvalue λ. Its eigenvector w = (αx·ox/(λ + αx²μ), αy·oy/(λ + αy²μ), 1) is the axis of
+the cone. docs/microfacet-sampling.md proves what is used here.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from shading.types import Scalar, Vector
+
+# After these steps the relative error of λ is 2e-11 and less than 1e-14 for α ≤ 1. For α up to 5 it is
+# 6e-6 and 1e-14 (measured in tests/shading/test_reflection_cone.py).
+FLOAT32_STEPS, FLOAT64_STEPS = 2, 4
+# Added to divisors that are zero at normal incidence, where λ = μ whatever is divided. It is small
+# enough to cost no step elsewhere, and large enough for half precision.
+_SMALL = 1e-6
+
+
+class ReflectionCone(NamedTuple):
+    """The cone pᵀCp > 0: its positive eigenvalue λ, its axis w = (`x`, `y`, 1), and −C_xx, −C_yy.
+
+    `length2` is |w|².
+    """
+
+    eigenvalue: Array
+    x: Array
+    y: Array
+    length2: Array
+    drop_x: Array
+    drop_y: Array
+
+
+def reflection_cone(
+    view: Vector, alpha_x: Scalar, alpha_y: Scalar, steps: int = FLOAT64_STEPS
+) -> ReflectionCone:
+    """Return the cone of normals that reflect o = `view` into the upper hemisphere.
+
+    `view` is a unit vector with o·n ≥ 0. `alpha_x` and `alpha_y` are positive. `steps` is the
+    number of iterations for λ: `FLOAT32_STEPS` or `FLOAT64_STEPS`.
+    """
+    x, y, z = jnp.asarray(view)
+    return cone_of(x, y, z, jnp.asarray(alpha_x), jnp.asarray(alpha_y), steps)
+
+
+def cone_of(
+    view_x: Array, view_y: Array, view_z: Array, alpha_x: Array, alpha_y: Array, steps: int
+) -> ReflectionCone:
+    """Return the cone as `reflection_cone` does, from the three components of the view."""
+    stretched_x, stretched_y = alpha_x * view_x, alpha_y * view_y
+    drop_x, drop_y = alpha_x * alpha_x * view_z, alpha_y * alpha_y * view_z
+    root = largest_eigenvalue(
+        view_z, stretched_x * stretched_x, stretched_y * stretched_y, drop_x, drop_y, steps
+    )
+    axis_x, axis_y = stretched_x / (root + drop_x), stretched_y / (root + drop_y)
+    length2 = 1 + axis_x * axis_x + axis_y * axis_y
+    return ReflectionCone(root, axis_x, axis_y, length2, drop_x, drop_y)
+
+
+def upper_area(cone: ReflectionCone) -> Array:
+    """Return N = λ²/(|w|² √((λ + αx²μ)(λ + αy²μ))), the area of the normals of upward reflections.
+
+    It is the projected area, as seen from the view, of the microfacets that reflect the view into
+    the upper hemisphere: ∫ D(m) (o·m) dω_m over these normals. D(h)/(4N) integrates to one over the
+    directions of the upper hemisphere.
+    """
+    root, along_x = cone.eigenvalue, cone.eigenvalue + cone.drop_x
+    return root * root / (cone.length2 * jnp.sqrt(along_x * (root + cone.drop_y)))
+
+
+def largest_eigenvalue(
+    height: Array, x2: Array, y2: Array, drop_x: Array, drop_y: Array, steps: int
+) -> Array:
+    """Return the root λ > 0 of λ = μ + X/(λ + a) + Y/(λ + b).
+
+    μ = `height`, X = `x2`, Y = `y2`, a = `drop_x` and b = `drop_y` are not negative. Each step
+    replaces the sum by one term r/(λ + c) that has the same value and derivative at the last
+    iterate, and solves the quadratic equation that remains. If a = b, the start is the root. The
+    derivative is that of the implicit equation.
+    """
+    return _eigenvalue(height, x2, y2, drop_x, drop_y, steps)
+
+
+def _eigenvalue(height, x2, y2, drop_x, drop_y, steps):
+    total = x2 + y2
+    mean = (x2 * drop_x + y2 * drop_y) / (total + _SMALL)
+    root = _quadratic_root(height, total, mean)
+    for _ in range(steps):
+        per_x, per_y = 1 / (root + drop_x), 1 / (root + drop_y)
+        part_x, part_y = x2 * per_x, y2 * per_y
+        value = part_x + part_y
+        slope = part_x * per_x + part_y * per_y
+        # r/(λ + c) has the value r/(λ + c) and the slope −r/(λ + c)²: λ + c = value/slope.
+        reach = (value + _SMALL) / (slope + _SMALL)
+        root = _quadratic_root(height, value * reach, reach - root)
+    return root
+
+
+_eigenvalue = jax.custom_jvp(_eigenvalue, nondiff_argnums=(5,))
+
+
+@_eigenvalue.defjvp
+def _implicit(steps, primals, tangents):
+    height, x2, y2, drop_x, drop_y = primals
+    d_height, d_x2, d_y2, d_drop_x, d_drop_y = tangents
+    root = _eigenvalue(height, x2, y2, drop_x, drop_y, steps)
+    per_x, per_y = 1 / (root + drop_x), 1 / (root + drop_y)
+    pull_x, pull_y = x2 * per_x * per_x, y2 * per_y * per_y
+    change = d_height + d_x2 * per_x + d_y2 * per_y - pull_x * d_drop_x - pull_y * d_drop_y
+    return root, change / (1 + pull_x + pull_y)
+
+
+def _quadratic_root(height: Array, total: Array, shift: Array) -> Array:
+    """Return the positive root of (λ − μ)(λ + c) = t for t ≥ 0, where c = `shift` > −μ."""
+    half = (height - shift) / 2
+    return half + jnp.sqrt(half * half + (height * shift + total))
