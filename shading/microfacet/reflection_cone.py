@@ -13,6 +13,7 @@ positive eigenvalue λ. Its eigenvector w = (αx·ox/(λ + αx²μ), αy·oy/(λ
 the cone. docs/microfacet-sampling.md proves what is used here.
 """
 
+import functools
 from typing import NamedTuple
 
 import jax
@@ -21,8 +22,8 @@ from jax import Array
 
 from shading.types import Scalar, Vector
 
-# After these steps the relative error of λ is 2e-11 and less than 1e-14 for α ≤ 1. For α up to 5 it is
-# 6e-6 and 1e-14 (measured in tests/shading/test_reflection_cone.py).
+# After these steps the relative error of λ is 2e-11 and below 1e-14 for α ≤ 1. For α up to 5 it is
+# 6e-6 and 1e-14 (tests/shading/test_reflection_cone.py).
 FLOAT32_STEPS, FLOAT64_STEPS = 2, 4
 # Added to divisors that are zero at normal incidence, where λ = μ whatever is divided. It is small
 # enough to cost no step elsewhere, and large enough for half precision.
@@ -80,6 +81,7 @@ def upper_area(cone: ReflectionCone) -> Array:
     return root * root / (cone.length2 * jnp.sqrt(along_x * (root + cone.drop_y)))
 
 
+@functools.partial(jax.custom_jvp, nondiff_argnums=(5,))
 def largest_eigenvalue(
     height: Array, x2: Array, y2: Array, drop_x: Array, drop_y: Array, steps: int
 ) -> Array:
@@ -90,10 +92,6 @@ def largest_eigenvalue(
     iterate, and solves the quadratic equation that remains. If a = b, the start is the root. The
     derivative is that of the implicit equation.
     """
-    return _eigenvalue(height, x2, y2, drop_x, drop_y, steps)
-
-
-def _eigenvalue(height, x2, y2, drop_x, drop_y, steps):
     total = x2 + y2
     mean = (x2 * drop_x + y2 * drop_y) / (total + _SMALL)
     root = _quadratic_root(height, total, mean)
@@ -108,14 +106,11 @@ def _eigenvalue(height, x2, y2, drop_x, drop_y, steps):
     return root
 
 
-_eigenvalue = jax.custom_jvp(_eigenvalue, nondiff_argnums=(5,))
-
-
-@_eigenvalue.defjvp
+@largest_eigenvalue.defjvp
 def _implicit(steps, primals, tangents):
     height, x2, y2, drop_x, drop_y = primals
     d_height, d_x2, d_y2, d_drop_x, d_drop_y = tangents
-    root = _eigenvalue(height, x2, y2, drop_x, drop_y, steps)
+    root = largest_eigenvalue(height, x2, y2, drop_x, drop_y, steps)
     per_x, per_y = 1 / (root + drop_x), 1 / (root + drop_y)
     pull_x, pull_y = x2 * per_x * per_x, y2 * per_y * per_y
     change = d_height + d_x2 * per_x + d_y2 * per_y - pull_x * d_drop_x - pull_y * d_drop_y

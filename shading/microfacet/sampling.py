@@ -182,11 +182,52 @@ def upper_light(
     third: Array,
     cone: ReflectionCone,
 ) -> tuple[Array, Array, Array]:
-    """Return the three components of the light of `sample_upper`.
+    """Return the three components of the light of `sample_upper`."""
+    point = point_across(cone, first, second)
+    sign = jnp.where(2 * third < 1 + point.seen, 1.0, -1.0)
+    return light_of(cone, point, sign, (x, y, alpha_x, alpha_y), 1 - first)
 
-    In p, the cone of upward reflections is a disk: with the axis w of the cone, the two numbers
-    √(1 + αx²μ/λ)(p_x − w_x p_z) and √(1 + αy²μ/λ)(p_y − w_y p_z) are in the unit disk. Both do not
-    change along w. A uniform point of the disk gives the part q of p that is at right angles to w.
+
+class PointAcross(NamedTuple):
+    """A point p = `along`·w + q of the cone, where q = (`x`, `y`, 0) − `back`·w is across w.
+
+    The area that the view sees there is proportional to 1 + `seen`, and at `along`·w − q to
+    1 − `seen`.
+    """
+
+    x: Array
+    y: Array
+    back: Array
+    along: Array
+    seen: Array
+
+
+def light_of(
+    cone: ReflectionCone,
+    point: PointAcross,
+    sign: Array | float,
+    given: tuple[Array, Array, Array, Array],
+    remaining: Array,
+) -> tuple[Array, Array, Array]:
+    """Return the light of a point of the cone (`sign` = 1), or of its mirror image (`sign` = −1).
+
+    `given` is ox, oy, αx, αy. `remaining` is one minus the first random number. The height of the
+    light is λ·remaining/|Mp|², because pᵀCp = λ·remaining. So rounding cannot make it negative.
+    """
+    x, y, alpha_x, alpha_y = given
+    p_z = point.along - sign * point.back
+    normal_x = alpha_x * (sign * point.x + p_z * cone.x)
+    normal_y = alpha_y * (sign * point.y + p_z * cone.y)
+    per_length2 = 1 / (normal_x * normal_x + normal_y * normal_y + p_z * p_z)
+    twice = 2 * cone.eigenvalue * point.along * (1 + sign * point.seen) * per_length2
+    return twice * normal_x - x, twice * normal_y - y, cone.eigenvalue * remaining * per_length2
+
+
+def point_across(cone: ReflectionCone, first: Array, second: Array) -> PointAcross:
+    """Return a point of the cone, of which q is uniform for uniform numbers in [0, 1)².
+
+    The cone is a disk: √(1 + αx²μ/λ)(p_x − w_x p_z) and √(1 + αy²μ/λ)(p_y − w_y p_z) are in the
+    unit disk. Both numbers do not change along w.
     """
     root, w_x, w_y, length2, drop_x, drop_y = cone
     radius, angle = jnp.sqrt(first), 2 * jnp.pi * second
@@ -199,16 +240,9 @@ def upper_light(
         (1 - first) + share_x * d_x * d_x + share_y * d_y * d_y + back * back * length2
     )
     along = height / jnp.sqrt(length2)
-    # p = along·w + q is seen with the weight 1 + Q, and its mirror image along·w − q with 1 − Q.
     tilt = (w_x * w_x + w_y * w_y) / length2
     seen = (w_x * d_x * (share_x + tilt) + w_y * d_y * (share_y + tilt)) / along
-    sign = jnp.where(2 * third < 1 + seen, 1.0, -1.0)
-    p_z = along - sign * back
-    normal_x, normal_y = alpha_x * (sign * d_x + p_z * w_x), alpha_y * (sign * d_y + p_z * w_y)
-    per_length2 = 1 / (normal_x * normal_x + normal_y * normal_y + p_z * p_z)
-    twice = 2 * root * along * (1 + sign * seen) * per_length2
-    # The height of the reflection is λ(1 − d²)/|m|², where d² is the first number.
-    return twice * normal_x - x, twice * normal_y - y, root * (1 - first) * per_length2
+    return PointAcross(d_x, d_y, back, along, seen)
 
 
 def _reflected(
