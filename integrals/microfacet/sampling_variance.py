@@ -13,9 +13,11 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from integrals.microfacet.directional_albedo import azimuth_kernel, lights
 from integrals.reference import require_float64
 from integrals.rules.interval import gauss_legendre
-from shading.microfacet.reflection_cone import FLOAT64_STEPS, cone_of, upper_area
+from shading.microfacet.ggx import Roughness, correlated_visibility
+from shading.microfacet.reflection_cone import FLOAT64_STEPS, components, cone_of, upper_area
 from shading.microfacet.sampling import (
     light_of,
     point_across,
@@ -43,9 +45,9 @@ class Variances(NamedTuple):
     upper: Array
 
 
-def variances(view: Vector, alpha_x: Scalar, alpha_y: Scalar, moments: Moments) -> Variances:
+def variances(view: Vector, alpha: Roughness, moments: Moments) -> Variances:
     """Return the variance of one sample, 2N·S − E², for the N of each sampler."""
-    areas = projected_areas(view, alpha_x, alpha_y)
+    areas = projected_areas(view, alpha)
     return Variances(*(2 * area * moments.second - moments.albedo**2 for area in areas))
 
 
@@ -56,44 +58,18 @@ def isotropic_moments(cos_view: Scalar, alpha: Scalar, nodes: int = NODES) -> Mo
     D over the azimuth. `cos_view` is μ in (0, 1], and `alpha` is in (0, 1]. Raises RuntimeError
     without float64.
     """
-    # notation: κ = 1 − α², s² = 1 − μ². Q and A are sums of terms that are not negative.
     require_float64()
     mu, alpha = jnp.asarray(cos_view, float), jnp.asarray(alpha, float)
-    alpha2, kappa, s2 = alpha * alpha, (1 - alpha) * (1 + alpha), (1 - mu) * (1 + mu)
-    width = alpha / jnp.sqrt(jnp.maximum(kappa, 1e-300))
-    sigma_mu = jnp.sqrt(alpha2 + kappa * mu * mu)
-
-    def integrands(nu: Array) -> tuple[Array, Array]:
-        total = mu + nu
-        q = (kappa * nu - (1 + alpha2) * mu) ** 2 + 4 * alpha2 * s2
-        a = 2 * alpha2 * (1 + mu * nu) + kappa * (s2 + (1 - nu) * (1 + nu))
-        k = 1 + 2 * kappa * total / jnp.sqrt(q) + kappa**2 * total * a / (q * jnp.sqrt(q))
-        g = alpha2 * nu / (mu * jnp.sqrt(alpha2 + kappa * nu * nu) + nu * sigma_mu)
-        return g * k, g * g * k / alpha2
-
-    x, weights = gauss_legendre(nodes, 0.0, 1.0)
-
-    def panel(lower, upper, centre, scale) -> tuple[Array, Array]:
-        # ν = centre + scale·sinh t: nodes are dense where the integrand is steep.
-        first, last = jnp.arcsinh((lower - centre) / scale), jnp.arcsinh((upper - centre) / scale)
-        t = first + (last - first) * x
-        measure = (last - first) * weights * scale * jnp.cosh(t)
-        return tuple(jnp.sum(measure * each) for each in integrands(centre + scale * jnp.sinh(t)))
-
-    near = jnp.minimum(width, mu)
-    # K has its peak at κν = (1 + α²)μ, with the width 2αs/κ. It is a peak if μ is not small.
-    peaked = mu > 2 * width
-    per_kappa = 1 / jnp.where(peaked, kappa, 1.0)
-    centre = jnp.where(peaked, (1 + alpha2) * mu * per_kappa, 0.0)
-    scale = jnp.where(peaked, 2 * alpha * jnp.sqrt(s2 + alpha2) * per_kappa, near)
-    parts = zip(panel(0.0, mu / 2, 0.0, near), panel(mu / 2, 1.0, centre, scale), strict=True)
-    return Moments(*(sum(each) for each in parts))
+    at = lights(mu, alpha, nodes)
+    seen = jax.vmap(correlated_visibility, (None, 0, None))(mu, at.cosines, alpha)
+    g = 2 * alpha * alpha * seen * at.cosines
+    measure = at.weights * azimuth_kernel(mu, alpha, at)
+    return Moments(measure @ g, measure @ (g * g) / (alpha * alpha))
 
 
 def moments(
     view: Vector,
-    alpha_x: Scalar,
-    alpha_y: Scalar,
+    alpha: Roughness,
     nodes: int = NODES,
     azimuths: int = AZIMUTHS,
 ) -> Moments:
@@ -104,10 +80,10 @@ def moments(
     o·n > 0. Raises RuntimeError without float64.
     """
     require_float64()
-    x, y, z = jnp.asarray(view, float)
-    alpha_x, alpha_y = jnp.asarray(alpha_x, float), jnp.asarray(alpha_y, float)
-    cone = cone_of(x, y, z, alpha_x, alpha_y, FLOAT64_STEPS)
-    area, sigma = upper_area(cone), stretched_length(x, y, z, alpha_x, alpha_y)
+    given = components(jnp.asarray(view, float), jnp.asarray(alpha, float))
+    x, y, z, alpha_x, alpha_y = given
+    cone = cone_of(*given, FLOAT64_STEPS)
+    area, sigma = upper_area(cone), stretched_length(*given)
     t, weights = gauss_legendre(nodes, 0.0, 1.0)
     # One minus the first number is scale·sinh t, because lights near the horizon are few.
     scale = jnp.minimum(alpha_x, alpha_y) ** 2 / 2

@@ -1,1 +1,24 @@
-"""Microfacet surfaces: GGX, and the sampling of its visible normals."""
+"""Rough metal and glass: the microfacet model of Smith and GGX.
+
+`ggx` has the distribution of normals, masking and the BRDF of single scattering. Nothing here
+knows of integrals: the albedos that a compensation of energy needs are arguments. `sampling` has
+the samplers of visible normals, and `reflection_cone` and `horizon` what they need.
+"""
+
+from shading.microfacet.ggx import brdf as brdf
+from shading.microfacet.ggx import correlated_visibility as correlated_visibility
+from shading.microfacet.ggx import masking as masking
+from shading.microfacet.ggx import masking_shadowing as masking_shadowing
+from shading.microfacet.ggx import ndf as ndf
+from shading.microfacet.ggx import projected_roughness as projected_roughness
+from shading.microfacet.ggx import projected_roughness_at as projected_roughness_at
+from shading.microfacet.ggx import smith_lambda as smith_lambda
+from shading.microfacet.ggx import uncorrelated_visibility as uncorrelated_visibility
+from shading.microfacet.ggx import visible_normal_density as visible_normal_density
+from shading.microfacet.horizon import horizon_height as horizon_height
+from shading.microfacet.sampling import projected_areas as projected_areas
+from shading.microfacet.sampling import reflection_density as reflection_density
+from shading.microfacet.sampling import sample_bounded_cap as sample_bounded_cap
+from shading.microfacet.sampling import sample_cap as sample_cap
+from shading.microfacet.sampling import sample_disk as sample_disk
+from shading.microfacet.sampling import sample_upper as sample_upper

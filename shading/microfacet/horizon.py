@@ -8,24 +8,24 @@ height.
 import jax.numpy as jnp
 from jax import Array
 
-from shading.microfacet.sampling import stretched_length
+from shading.microfacet.ggx import Roughness, projected_roughness
+from shading.microfacet.reflection_cone import components
 from shading.types import Scalar, Vector
 
 
-def horizon_bound(view: Vector, alpha_x: Scalar, alpha_y: Scalar, longitude: Scalar) -> Array:
+def horizon_bound(view: Vector, alpha: Roughness, longitude: Scalar) -> Array:
     """Return k(φ) = 1 − T/X, with which reflections on the horizon have the height δ_z = −k(φ) ẑ_z.
 
     T = |i + o|², X = |M⁻¹(i + o)|², and i is the direction on the horizon with the azimuth φ =
     `longitude` in radians. A bounded cap is right if its k is at least k(φ) for all φ.
     """
-    x, y, z = jnp.asarray(view)
+    x, y, z, alpha_x, alpha_y = components(view, alpha)
     sum_x, sum_y = x + jnp.cos(longitude), y + jnp.sin(longitude)
     length2 = 2 * (1 + x * jnp.cos(longitude) + y * jnp.sin(longitude))
     return 1 - length2 / ((sum_x / alpha_x) ** 2 + (sum_y / alpha_y) ** 2 + z * z)
 
 
-def horizon_height(view: Vector, alpha_x: Scalar, alpha_y: Scalar, longitude: Scalar) -> Array:
+def horizon_height(view: Vector, alpha: Roughness, longitude: Scalar) -> Array:
     """Return δ_z = −k(φ) ẑ_z of the reflection on the horizon at the azimuth φ = `longitude`."""
-    x, y, z = jnp.asarray(view)
-    sigma = stretched_length(x, y, z, jnp.asarray(alpha_x), jnp.asarray(alpha_y))
-    return -z / sigma * horizon_bound(view, alpha_x, alpha_y, longitude)
+    sigma = projected_roughness(view, alpha)
+    return -jnp.asarray(view)[2] / sigma * horizon_bound(view, alpha, longitude)

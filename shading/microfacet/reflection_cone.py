@@ -20,7 +20,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from shading.types import Scalar, Vector
+from shading.microfacet.ggx import Roughness, widths
+from shading.types import Vector
 
 # After these steps the relative error of λ is 2e-11 and below 1e-14 for α ≤ 1. For α up to 5 it is
 # 6e-6 and 1e-14 (tests/shading/test_reflection_cone.py).
@@ -44,16 +45,20 @@ class ReflectionCone(NamedTuple):
     drop_y: Array
 
 
+def components(view: Vector, alpha: Roughness) -> tuple[Array, Array, Array, Array, Array]:
+    """Return ox, oy, oz, αx and αy: what exported code takes in place of arrays."""
+    return (*jnp.asarray(view), *widths(alpha))
+
+
 def reflection_cone(
-    view: Vector, alpha_x: Scalar, alpha_y: Scalar, steps: int = FLOAT64_STEPS
+    view: Vector, alpha: Roughness, steps: int = FLOAT64_STEPS
 ) -> ReflectionCone:
     """Return the cone of normals that reflect o = `view` into the upper hemisphere.
 
-    `view` is a unit vector with o·n ≥ 0. `alpha_x` and `alpha_y` are positive. `steps` is the
-    number of iterations for λ: `FLOAT32_STEPS` or `FLOAT64_STEPS`.
+    `view` is a unit vector with o·n ≥ 0. `alpha` is α or (αx, αy), positive. `steps` is the number
+    of iterations for λ: `FLOAT32_STEPS` or `FLOAT64_STEPS`.
     """
-    x, y, z = jnp.asarray(view)
-    return cone_of(x, y, z, jnp.asarray(alpha_x), jnp.asarray(alpha_y), steps)
+    return cone_of(*components(view, alpha), steps)
 
 
 def cone_of(

@@ -14,8 +14,8 @@ sampler draws from, `projected_areas`: the smaller it is, the smaller is the var
   reflection, while those of the first three may be below the horizon and are lost there. It takes a
   third random number.
 
-Vectors are in the frame of the surface: z is the macroscopic normal, and `alpha_x` and `alpha_y`
-are the roughnesses along x and y, which are positive and may be above one.
+Vectors are in the frame of the surface, whose z axis is the normal n. `alpha` is the width of GGX as
+in `shading.microfacet.ggx`: a scalar or (αx, αy), positive, which may be above one.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,14 @@ import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
 
-from shading.microfacet.reflection_cone import FLOAT64_STEPS, ReflectionCone, cone_of, upper_area
+from shading.microfacet.ggx import Roughness
+from shading.microfacet.reflection_cone import (
+    FLOAT64_STEPS,
+    ReflectionCone,
+    components,
+    cone_of,
+    upper_area,
+)
 from shading.types import Scalar, Vector
 
 Numbers = Float[Array, "2"]
@@ -44,14 +51,14 @@ class ProjectedAreas(NamedTuple):
     upper: Array
 
 
-def projected_areas(view: Vector, alpha_x: Scalar, alpha_y: Scalar) -> ProjectedAreas:
+def projected_areas(view: Vector, alpha: Roughness) -> ProjectedAreas:
     """Return the projected areas N of the samplers for o = `view`, a unit vector with o·n ≥ 0."""
-    x, y, z = jnp.asarray(view)
-    alpha_x, alpha_y = jnp.asarray(alpha_x), jnp.asarray(alpha_y)
-    cone = cone_of(x, y, z, alpha_x, alpha_y, FLOAT64_STEPS)
-    sigma = stretched_length(x, y, z, alpha_x, alpha_y)
-    bound = cap_bound(x, y, z, alpha_x, alpha_y)
-    return ProjectedAreas((sigma + z) / 2, (sigma + bound * z) / 2, upper_area(cone))
+    given = components(view, alpha)
+    sigma, height = stretched_length(*given), given[2]
+    bounded = (sigma + cap_bound(*given) * height) / 2
+    return ProjectedAreas(
+        (sigma + height) / 2, bounded, upper_area(cone_of(*given, FLOAT64_STEPS))
+    )
 
 
 def reflection_density(distribution: Scalar, projected_area: Scalar) -> Array:
@@ -62,46 +69,39 @@ def reflection_density(distribution: Scalar, projected_area: Scalar) -> Array:
     return jnp.asarray(distribution) / (4 * jnp.asarray(projected_area))
 
 
-def sample_disk(view: Vector, alpha_x: Scalar, alpha_y: Scalar, sample: Numbers) -> Array:
+def sample_disk(view: Vector, alpha: Roughness, sample: Numbers) -> Array:
     """Return a light (3,): o = `view` reflected about any visible normal, by Heitz' disk.
 
     `view` is a unit vector, on either side of the surface. `sample` is uniform in [0, 1)².
     """
-    x, y, z = jnp.asarray(view)
-    return jnp.stack(disk_light(x, y, z, jnp.asarray(alpha_x), jnp.asarray(alpha_y), *sample))
+    return jnp.stack(disk_light(*components(view, alpha), *sample))
 
 
-def sample_cap(view: Vector, alpha_x: Scalar, alpha_y: Scalar, sample: Numbers) -> Array:
+def sample_cap(view: Vector, alpha: Roughness, sample: Numbers) -> Array:
     """Return a light (3,): o = `view` reflected about any visible normal, by a spherical cap.
 
     `view` is a unit vector, on either side of the surface. `sample` is uniform in [0, 1)².
     """
-    x, y, z = jnp.asarray(view)
-    alpha_x, alpha_y = jnp.asarray(alpha_x), jnp.asarray(alpha_y)
-    return jnp.stack(cap_light(x, y, z, alpha_x, alpha_y, *sample, jnp.ones(())))
+    return jnp.stack(cap_light(*components(view, alpha), *sample, 1.0))
 
 
-def sample_bounded_cap(view: Vector, alpha_x: Scalar, alpha_y: Scalar, sample: Numbers) -> Array:
+def sample_bounded_cap(view: Vector, alpha: Roughness, sample: Numbers) -> Array:
     """Return a light (3,): o = `view` reflected about a visible normal, by the bounded cap.
 
     `view` is a unit vector, on either side of the surface. `sample` is uniform in [0, 1)².
     """
-    x, y, z = jnp.asarray(view)
-    alpha_x, alpha_y = jnp.asarray(alpha_x), jnp.asarray(alpha_y)
-    bound = cap_bound(x, y, z, alpha_x, alpha_y)
-    return jnp.stack(cap_light(x, y, z, alpha_x, alpha_y, *sample, bound))
+    given = components(view, alpha)
+    return jnp.stack(cap_light(*given, *sample, cap_bound(*given)))
 
 
-def sample_upper(view: Vector, alpha_x: Scalar, alpha_y: Scalar, sample: ThreeNumbers) -> Array:
+def sample_upper(view: Vector, alpha: Roughness, sample: ThreeNumbers) -> Array:
     """Return a light (3,) above the horizon: o = `view` reflected about a visible normal.
 
     `view` is a unit vector with o·n ≥ 0. `sample` is uniform in [0, 1)³; the third number only
     makes one choice. The cosine i·n is positive in any precision.
     """
-    x, y, z = jnp.asarray(view)
-    alpha_x, alpha_y = jnp.asarray(alpha_x), jnp.asarray(alpha_y)
-    cone = cone_of(x, y, z, alpha_x, alpha_y, FLOAT64_STEPS)
-    return jnp.stack(upper_light(x, y, z, alpha_x, alpha_y, *sample, cone))
+    given = components(view, alpha)
+    return jnp.stack(upper_light(*given, *sample, cone_of(*given, FLOAT64_STEPS)))
 
 
 def stretched_length(x: Array, y: Array, z: Array, alpha_x: Array, alpha_y: Array) -> Array:
@@ -154,7 +154,7 @@ def cap_light(
     alpha_y: Array,
     first: Array,
     second: Array,
-    bound: Array,
+    bound: Array | float,
 ) -> tuple[Array, Array, Array]:
     """Return the light of `sample_cap` (`bound` = 1), or of `sample_bounded_cap` (`cap_bound`)."""
     sigma = stretched_length(x, y, z, alpha_x, alpha_y)

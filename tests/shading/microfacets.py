@@ -22,7 +22,7 @@ def view_of(theta: float, phi: float) -> np.ndarray:
 # Of each sampler: the function for arrays, the field of its N in `ProjectedAreas`, and how many
 # random numbers it takes.
 SAMPLERS = {
-    name: (jax.jit(jax.vmap(function)), field, numbers)
+    name: (jax.jit(jax.vmap(function, (None, None, 0))), field, numbers)
     for name, function, field, numbers in (
         ("disk", sample_disk, "visible", 2),
         ("cap", sample_cap, "visible", 2),
@@ -33,22 +33,20 @@ SAMPLERS = {
 areas = jax.jit(projected_areas)
 
 
-def drawn(name: str, view, alpha_x, alpha_y, numbers) -> np.ndarray:
+def drawn(name: str, view, alphas, numbers) -> np.ndarray:
     """Return lights (n, 3) of a sampler for one setting and random numbers (n, 2 or 3)."""
-    count, kind = len(numbers), numbers.dtype
-    lots = [np.broadcast_to(np.asarray(each, kind), (count,)) for each in (alpha_x, alpha_y)]
-    views = np.broadcast_to(np.asarray(view, kind), (count, 3))
-    return np.asarray(SAMPLERS[name][0](views, *lots, numbers))
+    kind = numbers.dtype
+    return np.asarray(SAMPLERS[name][0](np.asarray(view, kind), np.asarray(alphas, kind), numbers))
 
 
-def distribution(half: np.ndarray, alpha_x: float, alpha_y: float) -> np.ndarray:
+def distribution(half: np.ndarray, alphas) -> np.ndarray:
     """Return D of normals (…, 3) of any length but zero, from the definition of GGX."""
     unit = half / np.linalg.norm(half, axis=-1, keepdims=True)
-    squares = (unit / np.array([alpha_x, alpha_y, 1.0])) ** 2
-    return 1 / (np.pi * alpha_x * alpha_y * squares.sum(axis=-1) ** 2)
+    squares = (unit / np.array([*alphas, 1.0])) ** 2
+    return 1 / (np.pi * np.prod(alphas) * squares.sum(axis=-1) ** 2)
 
 
-def p_value(lights, view, alpha_x, alpha_y, area, lowest: float) -> float:
+def p_value(lights, view, alphas, area, lowest: float) -> float:
     """Return the p-value of lights (n, 3) for the density D(h)/(4N), N = `area`, by chi-square.
 
     The cells are 16 in cos θ from `lowest` to 1 by 24 in azimuth. Lights below `lowest` are counted
@@ -62,7 +60,7 @@ def p_value(lights, view, alpha_x, alpha_y, area, lowest: float) -> float:
     z, phi = np.meshgrid(height, azimuth, indexing="ij")
     level = np.sqrt(1 - z * z)
     at = np.stack([level * np.cos(phi), level * np.sin(phi), z], axis=-1)
-    density = distribution(at + view, alpha_x, alpha_y) / (4 * area)
+    density = distribution(at + view, alphas) / (4 * area)
     cells = density.reshape(rows, nodes, columns, nodes)
     size = (1 - lowest) * 2 * np.pi / rows / columns
     expected = np.einsum("aibj,i,j->ab", cells, weights, weights) * size

@@ -5,12 +5,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from shading.microfacet.ggx import projected_roughness
 from shading.microfacet.horizon import horizon_bound, horizon_height
+from shading.microfacet.reflection_cone import components
 from shading.microfacet.sampling import (
     cap_bound,
     reflection_density,
     sample_upper,
-    stretched_length,
 )
 from tests.shading.microfacets import (
     SAMPLERS,
@@ -41,11 +42,11 @@ def check(name, setting, count, mirrored=True) -> float:
     if not mirrored:
         # With a third number of zero the point of the disk is never replaced by its mirror image.
         random[:, 2] = 0
-    lights = drawn(name, view, *alphas, random)
+    lights = drawn(name, view, alphas, random)
     np.testing.assert_allclose(np.linalg.norm(lights, axis=1), 1, rtol=1e-13)
-    area = getattr(areas(view, *alphas), field)
+    area = getattr(areas(view, np.array(alphas)), field)
     lowest = -view[2] if field == "visible" else 0.0
-    return p_value(lights, view, *alphas, float(area), lowest)
+    return p_value(lights, view, alphas, float(area), lowest)
 
 
 @pytest.mark.parametrize("setting", FEW)
@@ -77,17 +78,17 @@ def any_settings(count: int, lowest: float, seed: int):
     # Some at the ends, and some isotropic
     alphas[:, ::7], alphas[:, 3::7] = lowest, 1.0
     alphas[0, 5::7] = alphas[1, 5::7]
-    return views, *alphas
+    return views, alphas.T
 
 
 def below_the_horizon(dtype, per_setting: int, count: int) -> int:
     rng, lost = np.random.default_rng(12), 0
-    views, alpha_x, alpha_y = any_settings(count, 0.01, 13)
+    views, alphas = any_settings(count, 0.01, 13)
     numbers = rng.random((per_setting, 3), dtype=dtype)
     # The largest numbers below one are the hardest.
     numbers[: per_setting // 10, 0] = 1 - np.finfo(dtype).eps / 2
-    for setting in zip(views, alpha_x, alpha_y, strict=True):
-        lights = drawn("upper", *setting, numbers)
+    for view, both in zip(views, alphas, strict=True):
+        lights = drawn("upper", view, both, numbers)
         assert lights.dtype == dtype
         assert np.isfinite(lights).all()
         lost += int(np.sum(lights[:, 2] <= 0))
@@ -112,16 +113,16 @@ def test_the_other_samplers_do_lose_lights(name):
     random = np.random.default_rng(14).random((count, numbers))
     for theta, phi, *alphas in MANY:
         view = view_of(theta, phi)
-        area = areas(view, *alphas)
+        area = areas(view, np.array(alphas))
         accepted = float(area.upper / getattr(area, field))
-        share = np.mean(drawn(name, view, *alphas, random)[:, 2] > 0)
+        share = np.mean(drawn(name, view, alphas, random)[:, 2] > 0)
         assert abs(share - accepted) < 5 * np.sqrt(accepted * (1 - accepted) / count) + 1e-9
         assert accepted < 1 + 1e-14
 
 
 def rejected(theta, alpha) -> tuple[float, float]:
     """Return the rejected fractions of all visible normals, and of the bounded cap."""
-    area = areas(view_of(theta, 25), alpha, alpha)
+    area = areas(view_of(theta, 25), np.array([alpha, alpha]))
     return float(1 - area.upper / area.visible), float(1 - area.upper / area.bounded)
 
 
@@ -153,9 +154,9 @@ def test_densities_integrate_to_one_over_the_hemisphere(setting):
         ],
         axis=-1,
     )
-    values = distribution(lights + view, *alphas)
+    values = distribution(lights + view, alphas)
     measure = (weights * np.pi / 4)[:, None] * np.sin(polar) * 2 * np.pi / 1024
-    found = areas(view, *alphas)
+    found = areas(view, np.array(alphas))
     for area in found:
         total = np.sum(reflection_density(1.0, area) * values * measure)
         np.testing.assert_allclose(total, found.upper / area, rtol=1e-10)
@@ -171,14 +172,14 @@ def test_horizon_is_that_of_the_definition():
         half /= np.linalg.norm(half)
         stretched = view * scale / np.linalg.norm(view * scale)
         height = 2 * (half @ stretched) * half[2] - stretched[2]
-        found = horizon_height(view, *alphas, longitude)
+        found = horizon_height(view, np.array(alphas), longitude)
         np.testing.assert_allclose(found, height, atol=1e-14)
 
 
 bounds = jax.jit(
-    jax.vmap(jax.vmap(horizon_bound, (None, None, None, 0)), (0, 0, 0, None)),
+    jax.vmap(jax.vmap(horizon_bound, (None, None, 0)), (0, 0, None)),
 )
-published = jax.jit(jax.vmap(lambda v, a, b: cap_bound(*v, a, b)))
+published = jax.jit(jax.vmap(lambda view, alpha: cap_bound(*components(view, alpha))))
 
 
 def settings_and_largest(seed: int, isotropic: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -194,8 +195,8 @@ def settings_and_largest(seed: int, isotropic: bool) -> tuple[np.ndarray, np.nda
     alphas = 10 ** rng.uniform(-2, np.log10(1.0 if isotropic else 5.0), (2, count))
     if isotropic:
         alphas[1] = alphas[0]
-    largest = bounds(views, *alphas, np.arange(512) * np.pi / 256).max(axis=1)
-    return np.asarray(published(views, *alphas)), np.asarray(largest)
+    largest = bounds(views, alphas.T, np.arange(512) * np.pi / 256).max(axis=1)
+    return np.asarray(published(views, alphas.T)), np.asarray(largest)
 
 
 def test_bound_of_an_isotropic_cap_is_tight():
@@ -216,7 +217,7 @@ def test_lights_have_finite_derivatives():
     points = np.array([[*view_of(t, p), a, b, 0.3, 0.7, 0.2] for t, p, a, b in places])
 
     def light(point):
-        return sample_upper(point[:3], point[3], point[4], point[5:])
+        return sample_upper(point[:3], point[3:5], point[5:])
 
     slopes = jax.jit(jax.vmap(jax.jacfwd(light)))(points)
     assert np.isfinite(slopes).all()
@@ -229,9 +230,9 @@ def test_lights_have_finite_derivatives():
 
 def test_a_view_below_the_surface_has_lights_above_its_mirror_image():
     """`sample_cap` and `sample_bounded_cap` are the same there, and lights follow D(h)/(4N)."""
-    view = view_of(130, 20)
+    view, alphas = view_of(130, 20), (0.5, 0.3)
     random = np.random.default_rng(18).random((100_000, 2))
-    lights = drawn("cap", view, 0.5, 0.3, random)
-    np.testing.assert_array_equal(lights, drawn("bounded cap", view, 0.5, 0.3, random))
-    area = float(stretched_length(*jnp.asarray(view), *jnp.asarray([0.5, 0.3])) + view[2]) / 2
-    assert p_value(lights, view, 0.5, 0.3, area, -view[2]) > REJECTION
+    lights = drawn("cap", view, alphas, random)
+    np.testing.assert_array_equal(lights, drawn("bounded cap", view, alphas, random))
+    area = float(projected_roughness(view, np.array(alphas)) + view[2]) / 2
+    assert p_value(lights, view, alphas, area, -view[2]) > REJECTION

@@ -45,7 +45,7 @@ def matrices(views, alpha_x, alpha_y) -> np.ndarray:
 
 def solved(steps, *given):
     def both(view, alpha_x, alpha_y):
-        cone = reflection_cone(view, alpha_x, alpha_y, steps)
+        cone = reflection_cone(view, jnp.stack([alpha_x, alpha_y]), steps)
         return cone.eigenvalue, upper_area(cone)
 
     return jax.jit(jax.vmap(both))(*given)
@@ -89,7 +89,7 @@ def test_area_is_that_of_the_closed_form_of_ps():
 
 
 def area_at(theta, phi, alpha_x, alpha_y) -> float:
-    return float(upper_area(reflection_cone(view_of(theta, phi), alpha_x, alpha_y)))
+    return float(upper_area(reflection_cone(view_of(theta, phi), np.array([alpha_x, alpha_y]))))
 
 
 @pytest.mark.parametrize("alpha", [0.01, 0.3, 1.0, 2.0])
