@@ -245,7 +245,10 @@ def check(trial: Trial, key: str) -> Check:
     except ToolchainError as error:
         return Check(key, precision, "failed", str(error), chain.tool, chain.note)
     apart = difference(values, trial.form)
-    spacing = np.spacing(np.abs(trial.form).astype(PRECISIONS[precision])).astype(np.float64)
+    # Components of a vector are compared in units of the largest one at their point.
+    sizes = np.abs(trial.form).reshape(-1, trial.calls.results)
+    sizes = np.broadcast_to(sizes.max(axis=1, keepdims=True), sizes.shape).reshape(-1)
+    spacing = np.spacing(sizes.astype(PRECISIONS[precision])).astype(np.float64)
     passed = apart.within(trial.allowed)
     known = trial.exact is not None
     status, why = "passed" if passed else "failed", None

@@ -50,9 +50,7 @@ def components(view: Vector, alpha: Roughness) -> tuple[Array, Array, Array, Arr
     return (*jnp.asarray(view), *widths(alpha))
 
 
-def reflection_cone(
-    view: Vector, alpha: Roughness, steps: int = FLOAT64_STEPS
-) -> ReflectionCone:
+def reflection_cone(view: Vector, alpha: Roughness, steps: int = FLOAT64_STEPS) -> ReflectionCone:
     """Return the cone of normals that reflect o = `view` into the upper hemisphere.
 
     `view` is a unit vector with o·n ≥ 0. `alpha` is α or (αx, αy), positive. `steps` is the number

@@ -14,8 +14,8 @@ sampler draws from, `projected_areas`: the smaller it is, the smaller is the var
   reflection, while those of the first three may be below the horizon and are lost there. It takes a
   third random number.
 
-Vectors are in the frame of the surface, whose z axis is the normal n. `alpha` is the width of GGX as
-in `shading.microfacet.ggx`: a scalar or (αx, αy), positive, which may be above one.
+Vectors are in the frame of the surface, whose z axis is the normal n. `alpha` is the width of GGX
+as in `shading.microfacet.ggx`: a scalar or (αx, αy), positive, which may be above one.
 """
 
 from typing import NamedTuple
@@ -56,9 +56,7 @@ def projected_areas(view: Vector, alpha: Roughness) -> ProjectedAreas:
     given = components(view, alpha)
     sigma, height = stretched_length(*given), given[2]
     bounded = (sigma + cap_bound(*given) * height) / 2
-    return ProjectedAreas(
-        (sigma + height) / 2, bounded, upper_area(cone_of(*given, FLOAT64_STEPS))
-    )
+    return ProjectedAreas((sigma + height) / 2, bounded, upper_area(cone_of(*given, FLOAT64_STEPS)))
 
 
 def reflection_density(distribution: Scalar, projected_area: Scalar) -> Array:

@@ -4,7 +4,6 @@ import jax
 import numpy as np
 import pytest
 
-from integrals.microfacet.directional_albedo import directional_albedo
 from integrals.microfacet.sampling_variance import (
     AZIMUTHS,
     NODES,
@@ -12,9 +11,7 @@ from integrals.microfacet.sampling_variance import (
     moments,
     variances,
 )
-from shading.microfacet.ggx import projected_roughness
-from shading.microfacet.sampling import projected_areas
-from tests.shading.microfacets import SAMPLERS, drawn, view_of
+from tests.shading.microfacets import SAMPLERS, areas, drawn, view_of
 
 # α or (αx, αy), θ and φ of the view in degrees; E; rejected fractions of all visible normals and of
 # the bounded cap; variances of these two and of the upper normals. All digits are right.
@@ -36,6 +33,7 @@ TABLE = [
 ]
 one_dimensional = jax.jit(isotropic_moments)
 over_the_cone = jax.jit(moments, static_argnums=(2, 3))
+variances_of = jax.jit(variances)
 
 
 def setting(row):
@@ -47,11 +45,11 @@ def setting(row):
 def test_table_of_rejections_and_variances(row):
     view, alphas = setting(row)
     found = over_the_cone(view, alphas, NODES, AZIMUTHS)
-    areas = projected_areas(view, alphas)
+    area = areas(view, alphas)
     assert abs(found.albedo - row[3]) <= 0.5e-6
-    rejected = [1 - areas.upper / each for each in areas[:2]]
+    rejected = [1 - area.upper / each for each in area[:2]]
     np.testing.assert_allclose(rejected, row[4], rtol=0, atol=0.501e-4)
-    np.testing.assert_allclose(variances(view, alphas, found), row[5], rtol=0, atol=0.501e-5)
+    np.testing.assert_allclose(variances_of(view, alphas, found), row[5], rtol=0, atol=0.501e-5)
     if np.ndim(row[0]) == 0:
         other = one_dimensional(view[2], row[0])
         # Both rules are exact to some roundings of their sums.
@@ -64,12 +62,21 @@ def test_anisotropic_samples_of_upper_normals_have_less_than_half_the_variance()
         assert visible > bounded > 2 * upper
 
 
-def test_albedos_are_those_of_the_other_rules():
-    for alpha, mu in ((0.01, 0.5), (0.05, 0.05), (0.25, 0.3), (1.0, 0.2)):
+def test_albedos_of_the_rules_are_right():
+    """The values are those of an adaptive rule in 30 digits."""
+    for alpha, mu, exact in (
+        (0.01, 0.5, 0.999742122599131),
+        (0.05, 0.05, 0.889894054270654),
+        (0.25, 0.3, 0.837905764575236),
+        (1.0, 0.2, 0.641648106154389),
+    ):
         view = np.array([np.sqrt(1 - mu * mu), 0, mu])
         found = over_the_cone(view, np.array([alpha, alpha]), NODES, AZIMUTHS)
-        np.testing.assert_allclose(found.albedo, directional_albedo(mu, alpha).value, rtol=2e-12)
+        np.testing.assert_allclose(found.albedo, exact, rtol=2e-12)
         np.testing.assert_allclose(found, one_dimensional(mu, alpha), rtol=2e-12)
+    view = view_of(60, 40)
+    found = over_the_cone(view, np.array([0.2, 0.8]), NODES, AZIMUTHS)
+    np.testing.assert_allclose(found.albedo, 0.663833520550, rtol=1e-12)
 
 
 @pytest.mark.parametrize("row", [TABLE[6], TABLE[-1]], ids=str)
@@ -78,9 +85,9 @@ def test_monte_carlo_has_this_mean_and_variance(name, row):
     """Both agree within five of their standard errors; that of the variance is estimated too."""
     count, (view, alphas), (_, field, numbers) = 200_000, setting(row), SAMPLERS[name]
     lights = drawn(name, view, alphas, np.random.default_rng(21).random((count, numbers)))
-    area = getattr(projected_areas(view, alphas), field)
-    nu, sigma_o = np.maximum(lights[:, 2], 0), projected_roughness(view, alphas)
-    sigma_i = np.sqrt((alphas[0] * lights[:, 0]) ** 2 + (alphas[1] * lights[:, 1]) ** 2 + nu**2)
+    area = getattr(areas(view, alphas), field)
+    nu, sigma_o = np.maximum(lights[:, 2], 0), np.linalg.norm(view * [*alphas, 1.0])
+    sigma_i = np.linalg.norm(lights * np.array([*alphas, 1.0]), axis=1)
     weights = np.asarray(2 * area * nu / (view[2] * sigma_i + nu * sigma_o))
     assert abs(weights.mean() - row[3]) < 5 * weights.std() / np.sqrt(count)
     squares = (weights - weights.mean()) ** 2

@@ -1,7 +1,6 @@
 """Samplers of GGX: their densities, their rejections, the horizon, and the bound of the cap."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
