@@ -95,11 +95,11 @@ def moments(
     @functools.partial(jax.vmap, in_axes=(None, 0))
     def terms(remaining, azimuth):
         point = point_across(cone, 1 - remaining, azimuth)
-        seen = 1 + point.seen
+        seen = 1 + point.lean / point.along
         light_x, light_y, light_z = light_of(cone, point, 1.0, (x, y, alpha_x, alpha_y), remaining)
         lit = stretched_length(light_x, light_y, light_z, alpha_x, alpha_y)
         w = 2 * area * light_z / (z * lit + light_z * sigma)
-        # The mirror image is the point at the opposite azimuth, which is seen with 1 − Q.
+        # The mirror image is the point at the opposite azimuth, which is seen with 1 − lean/along.
         return seen * w, seen * w * w
 
     albedo, square = (measure @ jnp.mean(each, axis=1) for each in terms(rest, second))

@@ -203,7 +203,8 @@ def _drawn_from(theta, phi, alpha_x, alpha_y, first, second, side):
     view = (sin_theta * jnp.cos(phi), sin_theta * jnp.sin(phi), jnp.cos(theta))
     first = jnp.minimum(first, _LARGEST["half"])
     cone = cone_of(*view, alpha_x, alpha_y, FLOAT64_STEPS)
-    chance = (1 + point_across(cone, first, second).seen) / 2
+    point = point_across(cone, first, second)
+    chance = (1 + point.lean / point.along) / 2
     itself = jnp.where(chance < 2 * _MARGIN, False, (side < 0.5) | (chance > 1 - 2 * _MARGIN))
     within = jnp.where(side < 0.5, 2 * side, 2 * side - 1)
     below, above = within * (chance - _MARGIN), 1 - within * (1 - chance - _MARGIN)
@@ -282,12 +283,15 @@ def _problem(key, symbol, meaning, definition, closed_form, sampler, make, argum
     reference = Reference(
         key, symbol, meaning, definition, AXES, Sampling(10, 10, 10), closed_form=closed_form
     )
+    stepped = sampler.area is _upper_area
+    left = {"left": "none but what the step of the eigenvalue leaves"} if stepped else {}
     exact = ExactCode(
         "closed form",
         AXES,
         lambda precision: (make(sampler, precision),),
         lambda points: (np.asarray(arguments(points)),),
         remark,
+        **left,
     )
     return Problem(reference, (), CallingConvention(key, "", ()), exact_code=exact)
 

@@ -20,6 +20,7 @@ as in `shading.microfacet.ggx`: a scalar or (αx, αy), positive, which may be a
 
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 from jaxtyping import Float
@@ -182,22 +183,22 @@ def upper_light(
 ) -> tuple[Array, Array, Array]:
     """Return the three components of the light of `sample_upper`."""
     point = point_across(cone, first, second)
-    sign = jnp.where(2 * third < 1 + point.seen, 1.0, -1.0)
+    sign = jnp.where((2 * third - 1) * point.along < point.lean, 1.0, -1.0)
     return light_of(cone, point, sign, (x, y, alpha_x, alpha_y), 1 - first)
 
 
 class PointAcross(NamedTuple):
     """A point p = `along`·w + q of the cone, where q = (`x`, `y`, 0) − `back`·w is across w.
 
-    The area that the view sees there is proportional to 1 + `seen`, and at `along`·w − q to
-    1 − `seen`.
+    The area that the view sees there is proportional to `along` + `lean`, and that at its mirror
+    image `along`·w − q to `along` − `lean`.
     """
 
     x: Array
     y: Array
     back: Array
     along: Array
-    seen: Array
+    lean: Array
 
 
 def light_of(
@@ -217,7 +218,7 @@ def light_of(
     normal_x = alpha_x * (sign * point.x + p_z * cone.x)
     normal_y = alpha_y * (sign * point.y + p_z * cone.y)
     per_length2 = 1 / (normal_x * normal_x + normal_y * normal_y + p_z * p_z)
-    twice = 2 * cone.eigenvalue * point.along * (1 + sign * point.seen) * per_length2
+    twice = 2 * cone.eigenvalue * (point.along + sign * point.lean) * per_length2
     return twice * normal_x - x, twice * normal_y - y, cone.eigenvalue * remaining * per_length2
 
 
@@ -227,20 +228,21 @@ def point_across(cone: ReflectionCone, first: Array, second: Array) -> PointAcro
     The cone is a disk: √(1 + αx²μ/λ)(p_x − w_x p_z) and √(1 + αy²μ/λ)(p_y − w_y p_z) are in the
     unit disk. Both numbers do not change along w.
     """
-    root, w_x, w_y, length2, drop_x, drop_y = cone
-    radius, angle = jnp.sqrt(first), 2 * jnp.pi * second
-    share_x, share_y = drop_x / root, drop_y / root
-    d_x = radius * jnp.cos(angle) / jnp.sqrt(1 + share_x)
-    d_y = radius * jnp.sin(angle) / jnp.sqrt(1 + share_y)
-    back = (w_x * d_x + w_y * d_y) / length2
-    # q = (d_x, d_y, 0) − back·w, and height = √(1 − |q|²), all of whose terms are positive.
-    height = jnp.sqrt(
-        (1 - first) + share_x * d_x * d_x + share_y * d_y * d_y + back * back * length2
-    )
-    along = height / jnp.sqrt(length2)
-    tilt = (w_x * w_x + w_y * w_y) / length2
-    seen = (w_x * d_x * (share_x + tilt) + w_y * d_y * (share_y + tilt)) / along
-    return PointAcross(d_x, d_y, back, along, seen)
+    angle = 2 * jnp.pi * second
+    per_root = jax.lax.rsqrt(cone.eigenvalue)
+    radius, per_eigenvalue = jnp.sqrt(first) * cone.eigenvalue * per_root, per_root * per_root
+    d_x, d_y = radius * jnp.cos(angle) * cone.root_x, radius * jnp.sin(angle) * cone.root_y
+    share_x, share_y = cone.drop_x * per_eigenvalue, cone.drop_y * per_eigenvalue
+    w_x, w_y, per_length2 = cone.x, cone.y, cone.per_length * cone.per_length
+    across_x, across_y = w_x * d_x, w_y * d_y
+    sideways = across_x + across_y
+    back = sideways * per_length2
+    # q = (d_x, d_y, 0) − back·w, and along = √(1 − |q|²)/|w|. All terms of the root are positive.
+    height2 = (1 - first) + share_x * d_x * d_x + share_y * d_y * d_y + back * sideways
+    along = jnp.sqrt(height2) * cone.per_length
+    tilt = (w_x * w_x + w_y * w_y) * per_length2
+    lean = across_x * (share_x + tilt) + across_y * (share_y + tilt)
+    return PointAcross(d_x, d_y, back, along, lean)
 
 
 def _reflected(
