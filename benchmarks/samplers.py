@@ -2,8 +2,9 @@
 
 All samplers get the same views, roughnesses and random numbers, in one run and in turn. A path
 tracer needs as many samples as the variance of one says, so what counts is time × variance. It is
-printed for the sampling alone. Tracing a ray to the light costs more, and the same for all
-samplers: then only the ratio of the variances is left.
+printed for the sampling alone, which is a small part of a path tracer's time. From some time on
+that everything else takes for a sample, such as tracing its ray, the upper sampler is better than
+the bounded cap: this time is printed too, in multiples of a sample by the bounded cap.
 """
 
 import argparse
@@ -74,14 +75,26 @@ def show(measured: dict, found: dict) -> None:
         print(f"{name:<26}{each['operations']:>12}{rate:>12.1f}{rate / first:>14.2f}")
     print("\nvariance, and time × variance of sampling alone, both to those of ggx-upper")
     names = [name.removeprefix("sampler/ggx-") for name in SAMPLERS]
-    print(f"{'αx, αy, θ, φ':<26}" + "".join(f"{name:>22}" for name in names))
+    titles = "".join(f"{name:>16}" for name in names)
+    print(f"{'αx, αy, θ, φ':<18}{titles}{'better from':>14}")
     for setting, variance in found.items():
         cost = {n: variance[n] / measured[n]["million_per_second"] for n in SAMPLERS}
         last = list(SAMPLERS)[-1]
         cells = [
-            f"{variance[n] / variance[last]:>12.2f}{cost[n] / cost[last]:>10.2f}" for n in SAMPLERS
+            f"{variance[n] / variance[last]:>9.2f}{cost[n] / cost[last]:>7.2f}" for n in SAMPLERS
         ]
-        print(f"{setting:<26}" + "".join(cells))
+        print(f"{setting:<18}" + "".join(cells) + f"{better_from(measured, variance):>14}")
+
+
+def better_from(measured: dict, variance: dict[str, float]) -> str:
+    """Return the time R from which (R + t)·variance is least for the upper sampler.
+
+    The unit is the time t of a sample by the bounded cap.
+    """
+    bounded, upper = "sampler/ggx-bounded-cap", "sampler/ggx-upper"
+    gain = variance[bounded] / variance[upper]
+    slower = measured[bounded]["million_per_second"] / measured[upper]["million_per_second"]
+    return "never" if gain < 1.0001 else f"{max(0.0, (slower - gain) / (gain - 1)):.1f}"
 
 
 def main() -> None:

@@ -30,7 +30,7 @@ _TABLE = (
     (0.2, 0.8, 5, 0),
     (1.0, 0.3, 60, 40),
 )
-_LONGITUDES = 721
+_LONGITUDES = 241
 # Of each sampler: label, colour, marker, dashes. The colours of the caps are those of the paper.
 _STYLES = (
     ("all visible normals", "#009e73", "s", (0, (5, 2))),
