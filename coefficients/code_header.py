@@ -74,7 +74,7 @@ def header_of(
             where = "" if reference.data else ", corners of the domain included"
             head[f"Error in {precision}"] = (
                 f"{text_of(trial.against_integral(values))} against {against} "
-                f"({len(trial.integral)} fixed points{where}; {how})"
+                f"({trial.integral_points} fixed points{where}; {how})"
             )
         if precision == "half":
             head["Half precision"] = _verdict(trial, values)

@@ -21,7 +21,8 @@ class CodeOptions:
     * `interface`: of a form of two stages. "listing" is that of the paper: Calc…Coeffs fills an
       array of some length. "material" is the same for every table and for the closed form:
       …Material returns a structure, which …(material, …) takes.
-    * `layout`: what this structure contains (`programs.Record`).
+    * `layout`: what this structure, or the one that a sampler returns, contains
+      (`programs.Record`).
     * `cosines`: whether arguments that are angles are replaced by their cosines.
     * `prefix`: what the names of functions and structures begin with.
     * `namespace`: that of all functions, in languages that have namespaces.
@@ -64,6 +65,9 @@ def shaped(entry: Entry, options: CodeOptions) -> Entry:
             functions=lambda precision: staged(precision, record, options.cosines),
             arguments_at=arguments_at,
         )
+    elif exact is not None and options.layout != DEFAULTS.layout:
+        alone = exact.functions
+        exact = replace(exact, functions=lambda kind: _laid_out(alone(kind), options.layout))
     return replace(entry, problem=entry.problem.changed(calling=calling, exact_code=exact))
 
 
@@ -81,7 +85,8 @@ def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
     """Raise ValueError for options that change nothing about the code of these quantities."""
     callings = [each.calling for each in problems]
     names = ", ".join(dict.fromkeys(each.name for each in problems))
-    if options.layout != "array" and options.interface != "material":
+    structures = options.interface == "material" or all(map(_returns_structure, problems))
+    if options.layout != "array" and not structures:
         raise ValueError(
             f"layout {options.layout!r} is for structures: allowed with interface material"
         )
@@ -90,6 +95,19 @@ def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
         raise ValueError(f"interface 'material' is for tables of two functions: {names} has one")
     if options.cosines and not any(a.cosine for each in callings for a in each.arguments):
         raise ValueError(f"cosines stand for angles: {names} takes no angle")
+
+
+def _returns_structure(owner: Problem) -> bool:
+    """Return whether the exact code of a quantity has functions that return structures."""
+    exact = owner.exact_code
+    return exact is not None and any(each.record is not None for each in exact.functions("float"))
+
+
+def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function, ...]:
+    return tuple(
+        each if each.record is None else replace(each, record=replace(each.record, layout=layout))
+        for each in functions
+    )
 
 
 def prefixed(functions: tuple[Function, ...], prefix: str) -> tuple[Function, ...]:

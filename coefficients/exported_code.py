@@ -111,6 +111,12 @@ def source_file(
         )
     if hosted is not None and len(listed) > 1 and not hosted.several:
         raise ValueError(f"bundle {options.bundle!r} is of {len(listed)} tables; allowed: one")
+    for entry, functions in zip(listed, called, strict=True):
+        if hosted is not None and functions[-1].result is not None:
+            raise ValueError(
+                f"bundle {options.bundle!r} is of functions of one value: {entry.name} has "
+                f"{functions[-1].result}"
+            )
     holds_code = hosted is None or hosted.holds_code
     if not holds_code and (constants, options.layout) != ("inline", DEFAULTS.layout):
         raise ValueError(

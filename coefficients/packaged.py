@@ -15,6 +15,7 @@ FOLDER = Path(__file__).parent / "tables"
 # Behind the name of a published table: the table as it is printed, without corrections.
 AS_PRINTED = "@printed"
 EXACT = "exact"
+SAMPLER = "sampler"
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}

@@ -7,6 +7,7 @@ name of the entry point is that of the quantity. The package is imported when th
 from importlib.metadata import entry_points
 
 from quantities.fuzz import PS, VELVET, G, Q, R
+from quantities.microfacet import SAMPLERS
 from quantities.problem import Problem
 
 GROUP = "shadefit.problems"
@@ -17,6 +18,11 @@ _PROBLEMS: dict[str, Problem] = {each.name: each for each in (PS, G, Q, R, VELVE
 def problems() -> dict[str, Problem]:
     """Return all quantities by name, in the order in which they are listed."""
     return dict(_PROBLEMS)
+
+
+def samplers() -> dict[str, Problem]:
+    """Return the samplers and their densities by name. They are exported, but not fitted."""
+    return dict(SAMPLERS)
 
 
 def problem(name: str) -> Problem:

@@ -1,6 +1,6 @@
 """Completion in the shell: names of quantities, tables, closed forms and languages.
 
-The names come from the names of the tables' files and from the two lists below. They do not come
+The names come from the names of the tables' files and from the lists below. They do not come
 from the registry, because it imports JAX, and every press of the tab key would wait for that. Tests
 compare the lists with the registry.
 """
@@ -8,9 +8,19 @@ compare the lists with the registry.
 from pathlib import Path
 
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
-# The quantities in the order of the registry, and the closed forms that can be exported.
+# The quantities in the order of the registry, and the closed forms and samplers to export.
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
+SAMPLERS = (
+    "sampler/ggx-upper",
+    "sampler/ggx-upper-pdf",
+    "sampler/ggx-bounded-cap",
+    "sampler/ggx-bounded-cap-pdf",
+    "sampler/ggx-cap",
+    "sampler/ggx-cap-pdf",
+    "sampler/ggx-disk",
+    "sampler/ggx-disk-pdf",
+)
 
 
 def complete_quantity(incomplete: str) -> list[str]:
@@ -29,9 +39,9 @@ def complete_table(incomplete: str) -> list[str]:
 
 
 def complete_shader(incomplete: str) -> list[str]:
-    """Complete the name of a table or of a closed form, which can be exported as code."""
-    exact = [name for name in EXACT if name.startswith(incomplete)]
-    return [*complete_table(incomplete), *exact]
+    """Complete the name of a table, a closed form or a sampler: what can be exported as code."""
+    others = [name for name in (*EXACT, *SAMPLERS) if name.startswith(incomplete)]
+    return [*complete_table(incomplete), *others]
 
 
 def complete_language(incomplete: str) -> list[str]:

@@ -4,6 +4,7 @@ E(μ, α) is in `directional_albedo`, and by independent methods in `visible_ell
 for anisotropic surfaces and any Fresnel reflectance), in `monte_carlo` and in `random_walk`.
 `fresnel_split` has the parts A and B of the albedo with Schlick's reflectance, `average_albedo`
 has E_avg(α), `fresnel_average` F_avg, and `limits` the limits of E. docs/microfacet.md proves them.
+`sampling_variance` has the variance of the samplers of visible normals.
 """
 
 from integrals.microfacet.average_albedo import average_albedo as average_albedo

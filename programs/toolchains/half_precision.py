@@ -67,5 +67,7 @@ def verdict(trial: "Trial", apart: Difference) -> tuple[bool, str]:
 
 
 def _apart(trial: "Trial", points: np.ndarray) -> np.ndarray:
+    """Return how far rounding to half moves the value at each point, or the worst of the values."""
     half, exact = (trial.emulated_at(points, kind) for kind in (np.float16, np.float64))
-    return np.abs(half - exact)
+    apart = np.abs(half - exact).reshape(len(points), -1)
+    return np.where(np.isfinite(apart).all(axis=1), apart.max(axis=1), np.nan)

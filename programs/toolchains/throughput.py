@@ -48,12 +48,17 @@ class Throughput:
 
 
 def measure_throughput(
-    function: Function, points: int = 1 << 17, rounds: int = 9, flags: tuple[str, ...] = FLAGS
+    function: Function,
+    points: int = 1 << 17,
+    rounds: int = 9,
+    flags: tuple[str, ...] = FLAGS,
+    rows: np.ndarray | None = None,
 ) -> Throughput:
     """Measure the exported C and the jitted JAX function on the same data, in turn.
 
     Arguments: `function`; `points`, the number of random points of its domain; `rounds`, how often
-    each is timed (the fastest time counts); `flags` for gcc. Returns the measurement. Raises
+    each is timed (the fastest time counts); `flags` for gcc; `rows` (n, k), the inputs in
+    place of random ones, a column for each of `input_names`. Returns the measurement. Raises
     ValueError when gcc is missing and when the code does not compile.
     """
     if points < 1 or rounds < 1:
@@ -61,7 +66,10 @@ def measure_throughput(
     reason = missing_command("gcc", "gcc")
     if reason is not None:
         raise ValueError(reason)
-    inputs = _random_inputs(function, points)
+    if rows is None:
+        inputs = _random_inputs(function, points)
+    else:
+        inputs, points = np.ascontiguousarray(rows.T, np.float32), len(rows)
     with workspace() as folder:
         compiled = _compile(function, folder, flags)
         # Coefficients are float64 constants. Without x64, JAX computes in float32 all the same.

@@ -26,6 +26,7 @@ from programs.printing.printer import write_source
 from programs.program import Program, evaluate
 from programs.toolchains.difference import Difference, difference, text_of
 from programs.toolchains.half_precision import verdict
+from programs.toolchains.interface import result_count
 from programs.toolchains.process import ToolchainError
 from programs.toolchains.registry import toolchain
 from programs.tracing.tracer import trace
@@ -64,12 +65,18 @@ class CallSequence:
     """Functions that are called one after the other to evaluate a quantity at a point.
 
     The first function takes its own arguments. Each other function takes the results of the one
-    before it, followed by its own arguments. The last returns the value. `columns(points)` returns
-    the own arguments of each function, one array (n, k) for each, at points (n, axes).
+    before it, followed by its own arguments. The last returns the value, or several values that are
+    compared one by one. `columns(points)` returns the own arguments of each function, one array
+    (n, k) for each, at points (n, axes).
     """
 
     functions: tuple[Function, ...]
     columns: Callable[[np.ndarray], tuple[np.ndarray, ...]]
+
+    @property
+    def results(self) -> int:
+        """The number of values at a point."""
+        return result_count(self.functions[-1])
 
 
 @dataclass(frozen=True)
@@ -102,7 +109,8 @@ class Check:
 class Trial:
     """Functions to verify in one precision, the points, and the values expected at these points.
 
-    `points` are (n, axes). `exact` returns the exact values (k,) at points (k, axes), or is None if
+    `points` are (n, axes). Functions with m values at a point give m·n values, in the order of the
+    points. `exact` returns the exact values (k,) or (k, m) at points (k, axes), or is None if
     they are not known. If it is slow, `exact_points` limits it to the first points. Raises
     ValueError for an unknown precision and for a function that cannot be traced.
     """
@@ -124,11 +132,11 @@ class Trial:
         return {function.name: trace(function) for function in self.calls.functions}
 
     def values(self, run: Run) -> np.ndarray:
-        """Call the functions one after the other at every point; returns (n,) float64."""
+        """Call the functions one after the other at every point; returns (n·m,) float64."""
         return self.values_at(self.points, run)
 
     def values_at(self, points: np.ndarray, run: Run) -> np.ndarray:
-        """Call the functions one after the other at other points; returns (n,) float64."""
+        """Call the functions one after the other at other points; returns (n·m,) float64."""
         dtype, results = PRECISIONS[self.precision], np.empty((len(points), 0))
         columns = self.calls.columns(points)
         for function, own in zip(self.calls.functions, columns, strict=True):
@@ -139,10 +147,10 @@ class Trial:
             finite = np.isfinite(rows).all(axis=1, keepdims=True)
             given = np.asarray(run(function, np.where(finite, rows, 0.0)), np.float64)
             results = np.where(finite, given, np.nan)
-        return results[:, 0]
+        return results.reshape(-1)
 
     def emulated(self, dtype: type[np.floating]) -> np.ndarray:
-        """Evaluate the programs in NumPy, every operation rounded to `dtype`; returns (n,)."""
+        """Evaluate the programs in NumPy, every operation rounded to `dtype`; returns (n·m,)."""
         return self.emulated_at(self.points, dtype)
 
     def emulated_at(self, points: np.ndarray, dtype: type[np.floating]) -> np.ndarray:
@@ -153,7 +161,7 @@ class Trial:
 
     @cached_property
     def form(self) -> np.ndarray:
-        """The values (n,) of the float64 programs at the rounded inputs."""
+        """The values (n·m,) of the float64 programs at the rounded inputs."""
         return self.emulated(np.float64)
 
     @cached_property
@@ -178,10 +186,15 @@ class Trial:
         """The exact values at the first `exact_points` points; raises ValueError without any."""
         if self.exact is None:
             raise ValueError("exact is None; allowed here: a function that returns exact values")
-        return self.exact(self.points[: self.exact_points])
+        return self.exact(self.points[: self.exact_points]).reshape(-1)
+
+    @property
+    def integral_points(self) -> int:
+        """The number of points at which exact values are taken."""
+        return len(self.integral) // self.calls.results
 
     def against_integral(self, values: np.ndarray) -> Difference:
-        """Return the difference of values (n,) from the exact values, where these are known."""
+        """Return the difference of values (n·m,) from the exact values, where these are known."""
         return difference(values[: len(self.integral)], self.integral)
 
 
@@ -201,7 +214,7 @@ def corners(axes: Sequence[DomainAxis]) -> np.ndarray:
 
 
 def run_code(trial: Trial, key: str, source: str) -> np.ndarray:
-    """Compile and run the code of a trial's functions, in the language `key`: values (n,).
+    """Compile and run the code of a trial's functions, in the language `key`: (n·m,) values.
 
     Raises ToolchainError when the code does not compile or run.
     """
@@ -232,7 +245,10 @@ def check(trial: Trial, key: str) -> Check:
     except ToolchainError as error:
         return Check(key, precision, "failed", str(error), chain.tool, chain.note)
     apart = difference(values, trial.form)
-    spacing = np.spacing(np.abs(trial.form).astype(PRECISIONS[precision])).astype(np.float64)
+    # Components of a vector are compared in units of the largest one at their point.
+    sizes = np.abs(trial.form).reshape(-1, trial.calls.results)
+    sizes = np.broadcast_to(sizes.max(axis=1, keepdims=True), sizes.shape).reshape(-1)
+    spacing = np.spacing(sizes.astype(PRECISIONS[precision])).astype(np.float64)
     passed = apart.within(trial.allowed)
     known = trial.exact is not None
     status, why = "passed" if passed else "failed", None
@@ -248,12 +264,12 @@ def check(trial: Trial, key: str) -> Check:
         why,
         chain.tool,
         chain.note,
-        len(values),
+        len(trial.points),
         apart,
         difference(values, trial.form, spacing),
         trial.allowed,
         trial.against_integral(values) if known else None,
-        len(trial.integral) if known else 0,
+        trial.integral_points if known else 0,
     )
 
 

@@ -19,7 +19,8 @@ def cost(
     table: Annotated[
         str,
         typer.Argument(
-            help="A table's name or path, or exact/NAME.", autocompletion=complete_shader
+            help="A table's name or path, or exact/NAME, or sampler/NAME.",
+            autocompletion=complete_shader,
         ),
     ],
     throughput: Annotated[

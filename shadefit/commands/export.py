@@ -15,7 +15,8 @@ def export(
     tables: Annotated[
         list[str],
         typer.Argument(
-            help="Names or paths of tables; for code also exact/NAME, a closed form.",
+            help="Names or paths of tables; for code also exact/NAME, a closed form, and "
+            "sampler/NAME.",
             autocompletion=complete_shader,
         ),
     ],
@@ -57,8 +58,8 @@ def export(
     layout: Annotated[
         Literal["array", "struct", "vec4"] | None,
         typer.Option(
-            help="Content of that structure: an array, single numbers, or vectors of four for a "
-            "constant buffer; by default array."
+            help="Content of that structure, or of the one that a sampler returns: an array, "
+            "single numbers, or vectors of four for a constant buffer; by default array."
         ),
     ] = None,
     cosines: Annotated[

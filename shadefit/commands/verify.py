@@ -19,7 +19,7 @@ def verify(
     tables: Annotated[
         list[str],
         typer.Argument(
-            help="Names or paths of tables, or exact/NAME, a closed form.",
+            help="Names or paths of tables, or exact/NAME, a closed form, or sampler/NAME.",
             autocompletion=complete_shader,
         ),
     ],

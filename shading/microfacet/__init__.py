@@ -2,7 +2,8 @@
 
 `ggx` has the distribution of normals, masking and the BRDF of single scattering, `fresnel` the
 reflectances of facets, and `kulla_conty` the light that is scattered more than once. Nothing here
-knows of integrals: the albedos that a compensation of energy needs are arguments.
+knows of integrals: the albedos that a compensation of energy needs are arguments. `sampling` has
+the samplers of visible normals, and `reflection_cone` and `horizon` what they need.
 """
 
 from shading.microfacet.fresnel import conductor as conductor
@@ -18,8 +19,15 @@ from shading.microfacet.ggx import projected_roughness_at as projected_roughness
 from shading.microfacet.ggx import smith_lambda as smith_lambda
 from shading.microfacet.ggx import uncorrelated_visibility as uncorrelated_visibility
 from shading.microfacet.ggx import visible_normal_density as visible_normal_density
+from shading.microfacet.horizon import horizon_height as horizon_height
 from shading.microfacet.kulla_conty import color_by_hill as color_by_hill
 from shading.microfacet.kulla_conty import color_by_kulla_conty as color_by_kulla_conty
 from shading.microfacet.kulla_conty import color_of_walk as color_of_walk
 from shading.microfacet.kulla_conty import multiple_scattering as multiple_scattering
 from shading.microfacet.kulla_conty import turquin_scale as turquin_scale
+from shading.microfacet.sampling import projected_areas as projected_areas
+from shading.microfacet.sampling import reflection_density as reflection_density
+from shading.microfacet.sampling import sample_bounded_cap as sample_bounded_cap
+from shading.microfacet.sampling import sample_cap as sample_cap
+from shading.microfacet.sampling import sample_disk as sample_disk
+from shading.microfacet.sampling import sample_upper as sample_upper
