@@ -20,9 +20,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from shading.piecewise.hidden_area import beyond_edge, hidden_area_closed
 from shading.piecewise.blend import Blend, weights
 from shading.piecewise.defects import tangent_defect
+from shading.piecewise.hidden_area import beyond_edge, hidden_area_closed
 from shading.piecewise.ndf import Profile, density
 from shading.types import Scalar
 

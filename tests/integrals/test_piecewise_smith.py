@@ -5,7 +5,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from shading.piecewise.hidden_area import hidden_area_closed
 from integrals.piecewise.smith import (
     hidden_area,
     hidden_area_of,
@@ -14,6 +13,7 @@ from integrals.piecewise.smith import (
     smith_g2,
     smith_lambda,
 )
+from shading.piecewise.hidden_area import hidden_area_closed
 from shading.piecewise.moments import moment, normalised
 from shading.piecewise.ndf import VARIABLES, Profile, density
 from tests.integrals.piecewise_examples import (
