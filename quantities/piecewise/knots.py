@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 # The angles at which the second derivative is estimated; the part of the knots that is distributed
-# equally over θ, so that no segment is very long; and over how many angles the estimate is averaged.
+# equally over θ, so that no segment is very long; how many angles the estimate is averaged over.
 _FINEST, _ANGLES, _EQUAL, _AVERAGED = 1e-4, 4001, 0.08, 25
 
 
@@ -32,7 +32,9 @@ def equidistributed_knots(
         curvature = curvature * np.sin(2 * middle) ** 2
     weight = np.sin(middle) * (np.cos(middle) + 3 * np.sin(middle))
     density = np.cbrt(curvature * weight)
-    density = np.convolve(np.pad(density, _AVERAGED, "edge"), np.ones(_AVERAGED) / _AVERAGED, "same")
+    density = np.convolve(
+        np.pad(density, _AVERAGED, "edge"), np.ones(_AVERAGED) / _AVERAGED, "same"
+    )
     density = np.interp(theta, middle, density[_AVERAGED:-_AVERAGED])
     total = np.concatenate([[0.0], np.cumsum(np.diff(theta) * (density[1:] + density[:-1]) / 2)])
     share = (1 - _EQUAL) * total / total[-1] + _EQUAL * theta / theta[-1]

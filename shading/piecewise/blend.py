@@ -8,6 +8,7 @@ D_x(0)/(2c).
 import equinox as eqx
 import jax.numpy as jnp
 from jax import Array
+from jax.typing import ArrayLike
 
 from shading.piecewise.ndf import Profile, density
 from shading.types import Scalar
@@ -41,7 +42,8 @@ def blend_density(blend: Blend, theta: Scalar, phi: Scalar) -> Array:
     return 2 * (x * along * density(blend.x, theta) + y * across * density(blend.y, theta))
 
 
-def azimuth_cdf(blend: Blend, phi: Scalar) -> Array:
-    """Return the part of the normals with an azimuth between 0 and φ in [0, 2π] (Eq. 7)."""
+def azimuth_cdf(blend: Blend, phi: ArrayLike) -> Array:
+    """Return the part of the normals with azimuths from 0 to φ in [0, 2π], elementwise (Eq. 7)."""
     x, y = weights(blend)
-    return phi / (2 * jnp.pi) + (x - y) / (4 * jnp.pi) * jnp.sin(2 * jnp.asarray(phi))
+    phi = jnp.asarray(phi)
+    return phi / (2 * jnp.pi) + (x - y) / (4 * jnp.pi) * jnp.sin(2 * phi)

@@ -7,6 +7,7 @@ needs (Eq. 9), and no step depends on a tolerance, which its Algorithm 2 misses 
 
 import jax.numpy as jnp
 from jax import Array
+from jax.typing import ArrayLike
 from jaxtyping import Float
 
 from shading.directions import direction
@@ -17,7 +18,7 @@ from shading.piecewise.roots import increasing_root
 from shading.types import Scalar, Vector
 
 
-def sample_normal(ndf: Profile | Blend, sample: Float[Array, "2"]) -> Array:
+def sample_normal(ndf: Profile | Blend, sample: Float[ArrayLike, "2"]) -> Array:
     """Draw a normal (3,) with the density D(m) (n·m). `sample` is uniform in [0, 1)²."""
     sample = jnp.asarray(sample)
     if isinstance(ndf, Profile):

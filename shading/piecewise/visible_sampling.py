@@ -9,6 +9,7 @@ cos 2φ to both.
 
 import jax.numpy as jnp
 from jax import Array
+from jax.typing import ArrayLike
 from jaxtyping import Float
 
 from shading.directions import direction
@@ -23,7 +24,7 @@ from shading.types import Scalar, Vector
 
 
 def sample_visible_normal(
-    ndf: Profile | Blend, outgoing: Vector, sample: Float[Array, "2"]
+    ndf: Profile | Blend, outgoing: Vector, sample: Float[ArrayLike, "2"]
 ) -> Array:
     """Draw a normal (3,) that is visible from the unit vector o = `outgoing`, with o_z > 0.
 
@@ -54,7 +55,9 @@ def visible_pdf(ndf: Profile | Blend, outgoing: Vector, normal: Vector) -> Array
     return density_of_normal(ndf, normal) * seen / visible_area(ndf, outgoing)
 
 
-def sample_reflection(ndf: Profile | Blend, outgoing: Vector, sample: Float[Array, "2"]) -> Array:
+def sample_reflection(
+    ndf: Profile | Blend, outgoing: Vector, sample: Float[ArrayLike, "2"]
+) -> Array:
     """Reflect o = `outgoing` about a visible normal: a direction (3,), which may be below z = 0."""
     return reflect(outgoing, sample_visible_normal(ndf, outgoing, sample))
 

@@ -14,7 +14,7 @@ from shading.piecewise.ndf import Profile, profile, uniform_knots
 def random_profile(seed: int, segments: int = 6, variable: str = "angle") -> Profile:
     """Return a normalised profile with random knots and values, which is not monotone."""
     rng = np.random.default_rng(seed)
-    inside = np.sort(rng.uniform(0.05, 1.5, segments - 1))
+    inside = (np.arange(1, segments) + rng.uniform(-0.4, 0.4, segments - 1)) * 1.5 / segments
     values = rng.uniform(0.1, 1, segments + 1)
     return normalised(profile([0, *inside, np.pi / 2], values, variable))
 
