@@ -20,6 +20,7 @@ from shadefit.commands.export import export
 from shadefit.commands.figures import figures
 from shadefit.commands.fit import fit
 from shadefit.commands.list import list_tables
+from shadefit.commands.ndf import ndf
 from shadefit.commands.new import new
 from shadefit.commands.refit import refit
 from shadefit.commands.render import render
@@ -90,6 +91,12 @@ _add(
     "fit",
     fit,
     "Example: shadefit fit data.csv --x NdotV,alpha --y E --sigma sigma --form rational:2,2",
+)
+_add(
+    "ndf",
+    ndf,
+    "Examples: shadefit ndf ggx:0.1 -o ggx.json --to hlsl --code ggx.hlsl; "
+    "shadefit ndf measured.csv --theta theta --value D --segments 24",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")
 _add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")

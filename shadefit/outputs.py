@@ -192,6 +192,32 @@ class AmbientOutput(_Output):
     files: list[str]
 
 
+class NdfCheck(Part):
+    """The check of one function of an NDF's code."""
+
+    function: str
+    language: str
+    status: str
+    reason: str | None
+
+
+class NdfOutput(_Output):
+    """`shadefit ndf`: `mass` is that of the source interpolated at the knots."""
+
+    command: Literal["ndf"] = "ndf"
+    target: str
+    linear_in: str
+    segments: Count
+    mass: Size
+    total_variation: Size
+    masking: Size
+    directions: Count
+    knots: list[Number]
+    values: list[Size]
+    checks: list[NdfCheck]
+    files: list[str]
+
+
 class RenderOutput(_Output):
     """`shadefit render`; with --sweep there are no `images`."""
 
@@ -213,6 +239,7 @@ Output = Annotated[
     | CertifyOutput
     | CostOutput
     | AmbientOutput
+    | NdfOutput
     | RenderOutput,
     Field(discriminator="command"),
 ]

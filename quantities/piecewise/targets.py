@@ -1,0 +1,131 @@
+"""The isotropic NDFs that a piecewise-linear one is fitted to: analytic ones, and measured samples.
+
+A target is named as on the command line: `ggx:0.1`, `beckmann:0.1`, `student-t:0.1,3` (the width,
+and the exponent γ of the Student-t NDF), or it is a table of angles and values.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import jax
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from integrals.data import table
+from integrals.piecewise.smith import hidden_area_of
+from shading.piecewise import slopes
+
+# Steps between the angles at which a target is integrated: small enough for widths above 0.002.
+_FINEST, _PANELS = 5e-4, 60
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """An isotropic NDF to fit: `of` maps angles (k,) in radians to values (k,), per steradian.
+
+    `mass` is what the values were divided by to make ∫ D cos θ dω = 1.
+    """
+
+    name: str
+    of: Callable[[np.ndarray], np.ndarray]
+    mass: float
+
+    def hidden_areas(self, angles: np.ndarray) -> np.ndarray:
+        """Return H (k,) of directions at the polar angles `angles` (k,), by quadrature."""
+        return hidden_areas_of(self.of, angles)
+
+
+def breaks() -> np.ndarray:
+    """Return increasing angles from 0 to π/2 between which targets are integrated."""
+    return np.concatenate([[0.0], np.geomspace(_FINEST, np.pi / 2, _PANELS)])
+
+
+def gauss_points(ends: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points and weights, (segments · nodes,) each, between increasing ends."""
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (x + 1)).ravel(), (half * weights).ravel()
+
+
+def hidden_areas_of(of: Callable, angles: np.ndarray) -> np.ndarray:
+    """Return H (k,) of an isotropic NDF at polar angles (k,)."""
+    # The NDF is evaluated outside of JAX, which measured ones do not know.
+    places, nodes = breaks(), 12
+
+    def area(theta_o):
+        def values(theta):
+            shape = jax.ShapeDtypeStruct(theta.shape, theta.dtype)
+            return jax.pure_callback(
+                lambda at: np.asarray(of(np.asarray(at))), shape, theta, vmap_method="sequential"
+            )
+
+        return hidden_area_of(values, theta_o, places, nodes=nodes)
+
+    return np.asarray(jax.jit(lambda at: jax.lax.map(area, at))(angles))
+
+
+def target_of(name: str) -> Target:
+    """Return the analytic target of a name such as 'ggx:0.1'. Raises ValueError for other names."""
+    kind, _, numbers = name.partition(":")
+    try:
+        given = [float(part) for part in numbers.split(",")]
+    except ValueError:
+        given = []
+    count = {"ggx": 1, "beckmann": 1, "student-t": 2}.get(kind)
+    if count is None or len(given) != count:
+        raise ValueError(
+            f"{name!r} is no NDF: allowed are ggx:WIDTH, beckmann:WIDTH, student-t:WIDTH,EXPONENT, "
+            "or the name of a file of columns"
+        )
+    if not 0.005 <= given[0] <= 2:
+        raise ValueError(f"{name}: width {given[0]:g}: allowed are 0.005 to 2")
+    if kind == "student-t" and not 1.6 <= given[1] <= 1000:
+        raise ValueError(f"{name}: exponent {given[1]:g}: allowed are 1.6 to 1000")
+    if kind == "beckmann":
+        of = partial(_numpy, slopes.beckmann, (given[0],))
+    else:
+        of = partial(_numpy, slopes.student_t, (given[0], 2.0 if kind == "ggx" else given[1]))
+    return Target(name, of, 1.0)
+
+
+def _numpy(function: Callable, parameters: tuple[float, ...], theta: np.ndarray) -> np.ndarray:
+    return np.asarray(function(theta, *parameters))
+
+
+def measured_target(
+    path: Path, angle: str = "theta", value: str = "D", *, degrees: bool = False
+) -> Target:
+    """Return the target of a file with a column of angles and one of values of D.
+
+    The values may be in any unit: they are divided by their mass. In between they are interpolated
+    by monotone cubics, and D is constant before the first and after the last angle. Raises
+    ValueError for fewer than four rows, angles outside [0, π/2] or given twice, and values that are
+    negative or not finite.
+    """
+    rows = table(path, [angle], value, None)
+    theta, d = np.asarray(rows.points)[:, 0], np.asarray(rows.values, float)
+    theta = np.radians(theta) if degrees else theta
+    order = np.argsort(theta)
+    theta, d = theta[order], d[order]
+    if len(theta) < 4:
+        raise ValueError(f"{path}: {len(theta)} rows: at least 4 are needed")
+    if theta[0] < 0 or theta[-1] > np.pi / 2 + 1e-9:
+        raise ValueError(
+            f"{path}: column {angle!r} is from {theta[0]:g} to {theta[-1]:g} radians: allowed are "
+            "those from 0 to π/2 (90 with --degrees)"
+        )
+    if (np.diff(theta) <= 0).any():
+        raise ValueError(f"{path}: column {angle!r} has an angle twice: allowed is once")
+    if (d < 0).any() or not d.any():
+        raise ValueError(f"{path}: column {value!r}: allowed are numbers ≥ 0 that are not all zero")
+    between = PchipInterpolator(theta, d)
+
+    def raw(at):
+        return np.maximum(between(np.clip(at, theta[0], theta[-1])), 0.0)
+
+    ends = np.unique(np.concatenate([[0.0, np.pi / 2], np.minimum(theta, np.pi / 2)]))
+    at, weight = gauss_points(ends, 6)
+    mass = float(2 * np.pi * np.sum(weight * raw(at) * np.cos(at) * np.sin(at)))
+    return Target(path.name, lambda at: raw(at) / mass, mass)

@@ -1,0 +1,59 @@
+"""`shadefit ndf`: from a file or a name to a table and to code; bad input is one line."""
+
+import json
+
+import pytest
+
+from coefficients.ndf_table import read_ndf
+from shadefit.cli import main
+from tests.shadefit.test_records import CHECKED
+
+
+def run(*arguments) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(["ndf", *map(str, arguments)])
+    return ended.value.code
+
+
+def test_a_fit_is_written_and_exported(tmp_path, capsys):
+    file, code = tmp_path / "ggx.json", tmp_path / "ggx.glsl"
+    assert run("ggx:0.2", "--segments", 8, "--out", file, "--json") == 0
+    said = CHECKED.validate_json(capsys.readouterr().out)
+    table = read_ndf(file)
+    assert (said.segments, said.files) == (8, [str(file)])
+    assert table.values == said.values
+    assert run(file, "--to", "glsl", "--code", code, "--name", "Lobe") == 0
+    assert "float LobeHidden(float NdotV)" in code.read_text()
+    assert "total variation" in capsys.readouterr().out
+    # The command in the table makes it again.
+    again = tmp_path / "again.json"
+    assert run(*table.command.split()[2:], "--out", again) == 0
+    assert again.read_text() == file.read_text()
+
+
+def test_the_columns_of_a_file(tmp_path, capsys):
+    path = tmp_path / "lobe.csv"
+    rows = [f"{t},{(90 - t) ** 2}" for t in range(0, 91, 10)]
+    path.write_text("\n".join(["angle,D", *rows]))
+    assert run(path, "--theta", "angle", "--degrees", "--segments", 6, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["target"] == "lobe.csv"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nope"], "'nope' is no NDF: allowed are ggx:WIDTH"),
+        (["none.csv"], "none.csv"),
+        (["ggx:0.02", "--segments", "4"], "miss the peak"),
+        (["ggx:0.2", "--linear-in", "cos"], "allowed are cos2, angle"),
+        (["ggx:0.2", "--verify"], "give --to"),
+        (["ggx:0.2", "--to", "c"], "--to needs --code"),
+        (["ggx:0.2", "--to", "fortran", "--verify"], "allowed: c, cpp"),
+        (["ggx:0.2", "--to", "c", "--verify", "--linear-in", "angle"], "cos2 only"),
+    ],
+)
+def test_bad_input_is_one_line(arguments, said, capsys):
+    assert run(*arguments) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
