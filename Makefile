@@ -64,6 +64,7 @@ verify: toolchains  ## compile, run and compare the exported code of every table
 
 bench: setup  ## reproduce the claims of speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/samplers.py
 
 format: setup  ## format and mend what can be mended
 	$(BIN)/ruff format .

@@ -26,7 +26,8 @@ from shading.microfacet.sampling import (
 )
 from shading.types import Scalar, Vector
 
-# With these nodes E and S have errors below 1e-10 for α ≥ 0.05 (the tests compare both rules).
+# With these nodes the relative error of `moments` is below 2e-12 for αx = αy ≥ 0.01, 1e-12 for
+# (0.2, 0.8), and 4e-9 for (0.05, 0.5) at θ = 85° (tests/integrals/test_sampling_variance.py).
 NODES, AZIMUTHS = 96, 512
 
 

@@ -89,23 +89,19 @@ def _upper_area(*given):
 
 
 def _disk_light(*given):
-    *rest, _ = given
-    return disk_light(*rest)
+    return disk_light(*given[:-1])
 
 
 def _cap_light(*given):
-    *rest, _ = given
-    return cap_light(*rest, 1.0)
+    return cap_light(*given[:-1], 1.0)
 
 
 def _bounded_light(*given):
-    *rest, _ = given
-    return cap_light(*rest, cap_bound(*rest[:5]))
+    return cap_light(*given[:-1], cap_bound(*given[:5]))
 
 
 def _upper_light(*given):
-    *rest, steps = given
-    return upper_light(*rest, cone_of(*rest[:5], steps))
+    return upper_light(*given[:-1], cone_of(*given[:5], given[-1]))
 
 
 _SAMPLERS = (
@@ -284,14 +280,14 @@ def _problem(key, symbol, meaning, definition, closed_form, sampler, make, argum
         key, symbol, meaning, definition, AXES, Sampling(10, 10, 10), closed_form=closed_form
     )
     stepped = sampler.area is _upper_area
-    left = {"left": "none but what the step of the eigenvalue leaves"} if stepped else {}
+    left = "what the step of the eigenvalue leaves" if stepped else "the rounding of float64"
     exact = ExactCode(
         "closed form",
         AXES,
         lambda precision: (make(sampler, precision),),
         lambda points: (np.asarray(arguments(points)),),
         remark,
-        **left,
+        f"none but {left}",
     )
     return Problem(reference, (), CallingConvention(key, "", ()), exact_code=exact)
 

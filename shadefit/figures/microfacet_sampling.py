@@ -44,13 +44,14 @@ def sampling_pictures() -> dict[str, Picture]:
     return {
         "horizon-caps": Picture(
             "Spherical caps and the horizon",
-            "What samplers of visible GGX normals draw from, after the supplement of Eto and "
-            "Tokuyoshi, with parameters of our own. In the space where GGX is a sphere, cap "
-            "samplers draw reflections uniformly above a height δ_z: above the green line all "
-            "visible normals, above the red line those of the bounded cap. The orange line is the "
-            "horizon, over the longitude of the reflection; what is below it is rejected. The red "
-            "line touches it for isotropic surfaces (first row). The sampler of upper normals "
-            "draws above the orange line only. The fractions are those that are rejected.",
+            "What samplers of visible GGX normals draw from, after Figure 1 of the supplement of "
+            "Tokuyoshi and Eto (2024), with parameters of our own. In the space where GGX is a "
+            "sphere, cap samplers draw reflections uniformly above a height δ_z: above the green "
+            "line all visible normals, above the red line those of the bounded cap. The orange "
+            "line is the horizon, over the longitude of the reflection; what is below it is "
+            "rejected. The red line touches it for isotropic surfaces (first row). The sampler of "
+            "upper normals draws above the orange line only. The fractions are those that are "
+            "rejected.",
             draw_caps,
         ),
         "sampling-variance": Picture(

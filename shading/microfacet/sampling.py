@@ -9,7 +9,7 @@ sampler draws from, `projected_areas`: the smaller it is, the smaller is the var
 * `sample_cap`: the same normals, by a spherical cap (Dupuy and Benyoub 2023, "Sampling visible GGX
   normals with spherical caps").
 * `sample_bounded_cap`: a smaller cap (Eto and Tokuyoshi 2023, "Bounded VNDF sampling for Smith-GGX
-  reflections").
+  reflections"; Tokuyoshi and Eto 2024).
 * `sample_upper`: just the normals whose reflections are above the horizon. It draws no other
   reflection, while those of the first three may be below the horizon and are lost there. It takes a
   third random number.

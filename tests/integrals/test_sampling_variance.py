@@ -74,9 +74,13 @@ def test_albedos_of_the_rules_are_right():
         found = over_the_cone(view, np.array([alpha, alpha]), NODES, AZIMUTHS)
         np.testing.assert_allclose(found.albedo, exact, rtol=2e-12)
         np.testing.assert_allclose(found, one_dimensional(mu, alpha), rtol=2e-12)
-    view = view_of(60, 40)
-    found = over_the_cone(view, np.array([0.2, 0.8]), NODES, AZIMUTHS)
-    np.testing.assert_allclose(found.albedo, 0.663833520550, rtol=1e-12)
+    for alphas, theta, phi, exact, tolerance in (
+        ((0.2, 0.8), 60, 40, 0.663833520550, 1e-12),
+        ((0.3, 0.6), 20, 10, 0.711515576482, 1e-12),
+        ((0.05, 0.5), 85, 70, 0.919551381264, 4e-9),
+    ):
+        found = over_the_cone(view_of(theta, phi), np.array(alphas), NODES, AZIMUTHS)
+        np.testing.assert_allclose(found.albedo, exact, rtol=tolerance)
 
 
 @pytest.mark.parametrize("row", [TABLE[6], TABLE[-1]], ids=str)

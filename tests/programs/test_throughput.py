@@ -28,6 +28,14 @@ def test_both_sides_of_the_measurement_compute_the_same(function):
 
 
 @needs_gcc
+def test_given_inputs_are_measured():
+    rows = np.random.default_rng(1).uniform(0.25, 1, (3000, 3))
+    measured = measure_throughput(ARRAYS, rounds=2, rows=rows)
+    assert measured.points == 3000
+    assert measured.difference <= DIFFERENCE
+
+
+@needs_gcc
 def test_code_with_another_constant_shows_in_the_difference(monkeypatch):
     right = timing.write_source
     monkeypatch.setattr(

@@ -11,6 +11,7 @@ from programs.languages import LANGUAGES, precision_of
 from programs.printing.printer import write_source
 from programs.toolchains import ToolchainError, toolchain, verification
 from programs.toolchains.difference import Difference, difference, text_of, two_digits
+from programs.toolchains.half_precision import verdict
 from programs.toolchains.interface import Toolchain
 from programs.toolchains.verification import CallSequence, Trial, check, corners, run_code
 
@@ -29,6 +30,15 @@ DIRECTION = function(
 POLE = function("Pole", [Parameter("x", UNIT)], lambda x: 1.0 / (1.0002 - x))
 ONE = CallSequence((WAVE,), lambda points: (points,))
 TWO = CallSequence((MATERIAL, DIRECTION), lambda points: (points[:, :1], np.cos(points[:, 1:])))
+BOTH = function(
+    "Both",
+    [Parameter("alpha", UNIT), Parameter("theta", UNIT, "rad")],
+    lambda alpha, theta: (0.0 * alpha, 0.7391 * jnp.cos(theta) / (1.0 + alpha * alpha)),
+    "",
+    2,
+    "both",
+)
+SEVERAL = CallSequence((BOTH,), lambda points: (points,))
 NEAR_POLE = CallSequence((POLE,), lambda points: (points[:, :1],))
 POINTS = np.random.default_rng(5).random((500, 2))
 
@@ -69,6 +79,32 @@ def test_the_difference_in_units_is_that_of_the_precision(precision):
         eps = float(np.finfo(verification.PRECISIONS[precision]).eps)
         assert 0.1 * eps < result.form.largest < 4 * eps
         assert 0.4 < result.units.largest < 8
+
+
+def test_several_values_are_compared_one_by_one(monkeypatch):
+    def exact(points):
+        return np.stack([np.zeros(len(points)), exact_wave(points)], axis=1)
+
+    trial = Trial(SEVERAL, POINTS, "float", exact, 200)
+    assert trial.form.shape == (1000,) and trial.integral_points == 200
+    result = check(trial, "python")
+    assert (result.status, result.points, result.integral_points) == ("passed", 500, 200)
+    assert 5e-4 < result.integral.largest < 1e-3
+    # A value of zero is compared in units of the largest value at its point.
+    assert result.units.largest < 8
+    one = check(Trial(ONE, POINTS, "float"), "python")
+    np.testing.assert_allclose(result.form.largest, one.form.largest, rtol=1e-15)
+    source = write_source(SEVERAL.functions, "python")
+    changed = re.sub(r"0\.739\d?\b", "0.7392", source)
+    assert changed != source
+    monkeypatch.setattr(verification, "write_source", lambda *_: changed)
+    assert check(trial, "python").status == "failed"
+
+
+def test_half_precision_of_several_values_is_judged_by_the_worst():
+    apart = difference(np.zeros(1), np.zeros(1))
+    several = verdict(Trial(SEVERAL, POINTS, "half"), apart)
+    assert several == verdict(Trial(ONE, POINTS, "half"), apart)
 
 
 @pytest.mark.parametrize("precision", ["half", "float", "double"])

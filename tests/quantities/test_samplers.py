@@ -1,5 +1,7 @@
 """Exported samplers: their code computes what `shading` computes, in every language."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,19 @@ PAIRS = {
 }
 
 
+def some_slow(names, fast: int) -> list:
+    """Return names of which all but the first few are for `make test-slow`."""
+    return [
+        name if k < fast else pytest.param(name, marks=pytest.mark.slow)
+        for k, name in enumerate(names)
+    ]
+
+
+@functools.cache
+def small_trial(name: str):
+    return trial_of(resolve(name), "float", 10)
+
+
 def evaluated(name: str, rows: np.ndarray, precision: str = "double") -> np.ndarray:
     """Evaluate the exported function of a sampler, with every operation rounded."""
     dtype = {"double": np.float64, "float": np.float32, "half": np.float16}[precision]
@@ -33,7 +48,7 @@ def rows_at(view, alphas, numbers) -> np.ndarray:
     return np.column_stack([np.tile([*view, *alphas], (len(numbers), 1)), numbers])
 
 
-@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("name", some_slow(PAIRS, 2))
 def test_code_draws_the_lights_of_the_model_and_weighs_them(name):
     view, alphas = view_of(60, 40), np.array([0.3, 0.8])
     draw, field, count = DRAWN[PAIRS[name]]
@@ -54,14 +69,11 @@ def test_code_draws_the_lights_of_the_model_and_weighs_them(name):
     np.testing.assert_allclose(found[above, 3], expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [NAMES[0], NAMES[1], *(pytest.param(each, marks=pytest.mark.slow) for each in NAMES[2:])],
-)
+@pytest.mark.parametrize("name", some_slow(NAMES, 1))
 def test_code_in_c_passes_and_little_is_allowed(name):
     if toolchain("c").missing("float"):
         pytest.skip("gcc is missing")
-    trial = trial_of(resolve(name), "float", 10)
+    trial = small_trial(name)
     result = check(trial, "c")
     assert result.status == "passed", result.reason
     assert result.points == len(trial.points)
@@ -79,7 +91,7 @@ def test_code_with_another_choice_fails(monkeypatch):
         return source.replace("(2.0f * ", "(1.9f * ")
 
     monkeypatch.setattr(verification, "write_source", wrong)
-    assert check(trial_of(resolve("sampler/ggx-upper"), "float", 10), "c").status == "failed"
+    assert check(small_trial("sampler/ggx-upper"), "c").status == "failed"
 
 
 @pytest.mark.slow
@@ -95,7 +107,7 @@ def test_code_passes_in_every_language(name, key):
 
 
 @pytest.mark.parametrize("precision", ["float", "half"])
-@pytest.mark.parametrize("name", ["ggx-upper", "ggx-bounded-cap", "ggx-disk"])
+@pytest.mark.parametrize("name", some_slow(PAIRS, 1))
 def test_values_are_finite_for_hostile_numbers(name, precision):
     """Views on the axes and at grazing, α of all sizes and below zero, numbers at and beyond 1."""
     views = [view_of(0, 0), view_of(90, 0), view_of(90, 90), view_of(89.99, 45), view_of(30, 200)]

@@ -137,7 +137,7 @@ def test_rejected_fractions_by_hand():
         assert abs(bounded) < 1e-14
 
 
-@pytest.mark.parametrize("setting", [(30, 0, 0.3, 0.3), (70, 40, 0.2, 0.8), (89, 90, 1.0, 0.4)])
+@pytest.mark.parametrize("setting", [(30, 0, 0.3, 0.3), (70, 40, 0.2, 0.8)])
 def test_densities_integrate_to_one_over_the_hemisphere(setting):
     """Gauss–Legendre in θ and trapezoid in φ; the densities of the others are 1 with their lost."""
     theta, phi, *alphas = setting
