@@ -48,6 +48,7 @@ def test_uphill_keeps_the_points_and_adds_maxima():
     assert len(sizes) == 4 and sizes[2:].max() > sizes[:2].max()
 
 
+@pytest.mark.slow
 def test_proofs_of_r_use_more_exact_values():
     reference, points = REFERENCES["r"], np.array([[0.15, 0.3], [0.16, 1.2]])
     usual, better = reference.estimates(points), reference.estimates(points, for_proof=True)
