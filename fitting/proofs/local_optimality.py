@@ -11,9 +11,9 @@ import numpy as np
 from scipy.optimize import linprog
 
 from fitting.form import FittedForm
-from fitting.proofs.least_error import rows_of
+from fitting.proofs.least_error import ROWS, rows_of
 from fitting.solvers.linear_programs import orthonormal_steps, tangent_lines
-from fitting.solvers.residuals import limits, residuals
+from fitting.solvers.residuals import largest_of, limits, residuals
 
 # A multiplier above this belongs to an extremum.
 _ACTIVE = 1e-9
@@ -51,12 +51,17 @@ def local_optimality(
     error = problem.values(z)
     if not 0 < np.abs(error).max() < np.inf:
         return None
+    least, most = limits(problem, "both")
     rows = rows_of(points, error)
+    if bounded:
+        # The values that are nearest to the ends of the codomain hold steps back too.
+        near = largest_of(-np.minimum(most - error, error - least), ROWS)
+        rows = np.union1d(rows, np.nonzero(near)[0])
     lines = tangent_lines(problem, z, error, rows, 1)
     slopes = lines.slopes @ orthonormal_steps(lines) / lines.size
     height = lines.error / lines.size
     # What is outside of the codomain may stay there, but may not go farther.
-    least, most = (each[rows] / lines.size for each in limits(problem, "both"))
+    least, most = (each[rows] / lines.size for each in (least, most))
     above, below = np.maximum(most - height, 0), np.maximum(height - least, 0)
     falls, rises = np.isfinite(above), np.isfinite(below)
     matrix = np.concatenate([slopes, -slopes, slopes[falls], -slopes[rises]])

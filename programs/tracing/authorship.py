@@ -10,12 +10,16 @@ from collections.abc import Callable
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
+from threading import Lock
 from types import CodeType
 from typing import Any
 
 import jax
 
 _JAX = str(Path(jax.__file__).parent)
+
+# Python 3.11 counts the depth of recursion of all threads that parse together, and may fail.
+_PARSING = Lock()
 
 # The position of an expression: first line, last line, first column, last column.
 Position = tuple[int | None, int | None, int | None, int | None]
@@ -60,7 +64,8 @@ def is_jax(file: str) -> bool:
 def _assignments(file: str) -> dict[Position, str]:
     # If the source is missing or has changed, only names are lost: the program stays the same.
     try:
-        tree = ast.parse("".join(linecache.getlines(file)))
+        with _PARSING:
+            tree = ast.parse("".join(linecache.getlines(file)))
     except SyntaxError:
         return {}
     names: dict[Position, str] = {}
