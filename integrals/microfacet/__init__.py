@@ -6,6 +6,7 @@ for anisotropic surfaces and any Fresnel reflectance), in `monte_carlo` and in `
 has E_avg(α), `fresnel_average` F_avg, and `limits` the limits of E. docs/microfacet.md proves them.
 """
 
+from integrals.microfacet.anisotropic import ANISOTROPIC_ALBEDO as ANISOTROPIC_ALBEDO
 from integrals.microfacet.average_albedo import average_albedo as average_albedo
 from integrals.microfacet.average_albedo import average_of_directional as average_of_directional
 from integrals.microfacet.directional_albedo import directional_albedo as directional_albedo

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from integrals.microfacet import (
-    albedo_by_sampling,
+    ANISOTROPIC_ALBEDO,
     anisotropic_albedo,
     average_albedo,
     conductor_average,
@@ -54,10 +54,12 @@ def one_dimensional():
 
 @functools.cache
 def ellipse():
-    def albedo(alpha_x, alpha_y, theta, phi):
-        return anisotropic_albedo(direction(theta, phi), jnp.stack([alpha_x, alpha_y]))
+    return batched(ANISOTROPIC_ALBEDO.quadrature, 4)
 
-    return batched(albedo, 2)
+
+@functools.cache
+def limit():
+    return batched(smooth_limit, 8)
 
 
 def view(mu) -> np.ndarray:
@@ -103,6 +105,7 @@ def test_anisotropic_albedo_is_exact_to_1e_10_up_to_a_ratio_of_ten():
     np.testing.assert_allclose(value, truth, rtol=0, atol=1e-10)
 
 
+@pytest.mark.slow
 def test_ellipse_has_any_fresnel_reflectance():
     """Schlick's reflectance for F0 = 0 gives B of the Fresnel split."""
     mu, alpha = 0.3, 0.25
@@ -111,6 +114,7 @@ def test_ellipse_has_any_fresnel_reflectance():
     assert abs(found.value - 0.0653702498986) < 1e-12
 
 
+@pytest.mark.slow
 def test_derivatives_of_the_ellipse_are_those_of_the_integral_over_the_cosine():
     mu, alpha = np.array([1e-9, 0.05, 0.4, 1.0]), np.array([0.3, 0.1, 1.0, 0.3])
 
@@ -134,11 +138,12 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
     assert np.all(error < 1e-2)
 
 
-def test_monte_carlo_of_an_anisotropic_metal():
-    alpha_x, alpha_y, theta, phi, exact = ANISOTROPIC[0]
-    at = direction(*np.radians([theta, phi]))
-    value, error = albedo_by_sampling(at, np.array([alpha_x, alpha_y]), samples=1 << 14)
-    assert abs(value - exact) <= 5 * error
+def test_legs_of_the_anisotropic_albedo_agree():
+    alpha_x, alpha_y, theta, phi, exact = ANISOTROPIC.T
+    one = functools.partial(ANISOTROPIC_ALBEDO.monte_carlo, samples=1 << 14)
+    value, error = batched(one, 4)(alpha_x, alpha_y, np.radians(theta), np.radians(phi))
+    assert np.all(abs(value - exact) <= 5 * error)
+    assert ANISOTROPIC_ALBEDO.best_leg == "quadrature"
 
 
 def test_walk_leaves_after_one_reflection_as_often_as_the_albedo_says():
@@ -171,7 +176,7 @@ def test_walk_refuses_bad_input():
 
 def test_limit_of_smooth_surfaces():
     x = np.array([0.0, 1e-3, 0.2, 1.1, 4.0, 50.0])
-    value, error = batched(smooth_limit, 8)(x)
+    value, error = limit()(x)
 
     def integrand(y, x):
         across = x * np.sqrt(1 + y * y) + y * np.sqrt(1 + x * x)
@@ -186,14 +191,15 @@ def test_limit_of_smooth_surfaces():
     slope = float(mp.ellipe(-3) / 2 - 1)
     assert abs(value[0] - 1) < 1e-11
     np.testing.assert_allclose((1 - value[1]) / x[1], slope, rtol=1e-2)
-    np.testing.assert_allclose(jax.grad(lambda x: smooth_limit(x).value)(1e-9), -slope, rtol=1e-6)
-    assert np.isfinite(jax.grad(lambda x: smooth_limit(x).value)(0.0))
+    steep = batched(jax.grad(lambda x: smooth_limit(x).value), 2)(np.array([0.0, 1e-9]))
+    np.testing.assert_allclose(steep, -slope, rtol=1e-5)
     np.testing.assert_allclose((1 - value[5]) * 2 * x[5] ** 2, 1, rtol=4e-2)
 
 
 def test_a_ninth_of_the_energy_is_missing_however_smooth_the_surface_is():
-    one = jax.jit(lambda x: smooth_limit(x).value)
-    lowest = minimize_scalar(lambda x: float(one(x)), bounds=(0.5, 2), options={"xatol": 1e-7})
+    lowest = minimize_scalar(
+        lambda x: limit()(np.array([x])).value[0], bounds=(0.5, 2), options={"xatol": 1e-7}
+    )
     assert abs(lowest.fun - 0.8914527) < 1e-7
     assert abs(lowest.x - 1.1062) < 1e-4
     # E(αx, α) tends to e(x) quadratically in α.
@@ -214,6 +220,7 @@ def test_expansions_of_the_directional_albedo():
     np.testing.assert_allclose(missing - alpha * np.log(1 / mu), constant, rtol=0, atol=2e-4)
 
 
+@pytest.mark.slow
 def test_expansion_of_the_average_albedo():
     alpha = 0.01
     leading = np.log(1 / alpha) + 3 / 5 + 19 / 15 * np.log(2) - 9 / 10 * np.log(3)
@@ -243,7 +250,6 @@ def test_edges_have_closed_forms():
         rtol=0,
         atol=1e-11,
     )
-    np.testing.assert_allclose(normal_albedo(1.0), 1 - np.log(2), rtol=1e-12)
 
 
 def test_average_of_a_dielectric_has_a_closed_form():
@@ -263,6 +269,7 @@ def test_average_of_a_dielectric_has_a_closed_form():
     np.testing.assert_allclose(slopes[abs(index - 1) > 0.1], expected, rtol=0, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_average_of_schlick_and_of_conductors():
     def average(function):
         return quad(lambda x: 2 * x * float(function(x)), 0, 1, epsabs=1e-13, limit=200)[0]
