@@ -77,7 +77,7 @@ def draw_dip() -> Figure:
     right.plot(ratios, limit, color="black", linestyle="--", label="e, the limit α → 0")
     right.set(xscale="log", xlim=(ratios[0], ratios[-1]), xlabel="μ/α")
     left.set(xlim=(0, 1), ylim=(0.3, 1.01), xlabel="μ", ylabel="E")
-    left.legend(loc="lower right")
+    left.legend(loc="lower left")
     right.legend(loc="lower left")
     return figure
 
@@ -90,7 +90,7 @@ def _padded(function, mu: np.ndarray, alpha: float, size: int) -> np.ndarray:
 
 def draw_colors() -> Figure:
     """Draw the errors of Hill, Kulla and Conty, Turquin and `color_of_walk` against the walk."""
-    figure = Figure(figsize=(9.2, 3.4), layout="constrained")
+    figure = Figure(figsize=(9.2, 3.6), layout="constrained")
     panels = figure.subplots(1, len(_SURFACES), sharey=True)
     f0 = _NORMAL_REFLECTANCES
     fresnel = (1 + 20 * f0) / 21
@@ -117,7 +117,7 @@ def draw_colors() -> Figure:
         panel.fill_between(f0, -2 * truth.error, 2 * truth.error, color="#dddddd", linewidth=0)
         panel.set(title=f"α = {alpha:g}, μ = {mu:g}", xlabel="F0", ylim=(-0.11, 0.11), xlim=(0, 1))
     panels[0].set_ylabel("error of the albedo")
-    panels[0].legend(loc="lower left", fontsize=7)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 
 
