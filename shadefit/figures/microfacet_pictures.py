@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 from integrals.microfacet import average_albedo, directional_albedo, fresnel_split, smooth_limit
 from integrals.microfacet.random_walk import schlick, walk
 from shadefit.figures.picture import Picture
+from shadefit.render.metal import Metal, metal_sphere
+from shadefit.render.srgb import to_srgb
 from shading.microfacet import (
     color_by_hill,
     color_by_kulla_conty,
@@ -56,6 +58,13 @@ def microfacet_pictures() -> dict[str, Picture]:
             "white, with f_ms of Kulla and Conty by the exact E and E_avg. Third and fourth row: "
             "gold, single scattering only, and with f_ms and the color ⅔.",
             draw_furnace,
+        ),
+        "ggx-metal": Picture(
+            "Rough gold",
+            "Spheres of gold under a sky and three lamps, above a chequered ground, for four "
+            "widths α of GGX. First row: single scattering only, which darkens rough gold. Second "
+            "row: with f_ms by the exact E and E_avg and the color ⅔, which is more saturated.",
+            draw_metal,
         ),
     }
 
@@ -166,6 +175,23 @@ def _sphere(reflectances, multiple: bool, alpha: float) -> np.ndarray:
         inside = np.interp(cosine, nodes, values)
         image[..., channel] = _FURNACE * np.where(radius2 < 1, inside, 1.0)
     return np.where(image < 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055)
+
+
+def draw_metal() -> Figure:
+    """Render a sphere of gold for four roughnesses, without and with multiple scattering."""
+    figure = Figure(figsize=(7.4, 4.1), layout="constrained")
+    panels = figure.subplots(2, len(_SPHERE_ALPHAS))
+    for line, (name, multiple) in zip(panels, (("single", False), ("all", True)), strict=True):
+        for panel, alpha in zip(line, _SPHERE_ALPHAS, strict=True):
+            image = metal_sphere(Metal(alpha, _GOLD), size=_SPHERE, multiple=multiple)
+            panel.imshow(to_srgb(image), interpolation="antialiased")
+            panel.set(xticks=[], yticks=[])
+            for side in ("top", "right", "bottom", "left"):
+                panel.spines[side].set_visible(False)
+        line[0].set_ylabel(name)
+    for panel, alpha in zip(panels[0], _SPHERE_ALPHAS, strict=True):
+        panel.set_title(f"α = {alpha:g}")
+    return figure
 
 
 _SPLIT = jax.jit(jax.vmap(partial(fresnel_split, nodes=48, azimuths=96), (0, None)))
