@@ -112,8 +112,8 @@ def anisotropic_albedo(
     """Return the albedo for a unit vector o = `view` with o·n ≥ 0, and a bound on its error.
 
     `alpha` is α or (αx, αy). `fresnel` maps an array of cosines o·h to reflectances. With the
-    default numbers of points the value is exact to 1e-10 for min(α) ≥ 0.05 and a ratio up to 10. The
-    bound is larger there, up to 1e-8, because it comes from ¾ of the points.
+    default numbers of points the value is exact to 1e-10 for min(α) ≥ 0.05 and a ratio up to 10.
+    The bound may be larger there, up to 1e-8, because it comes from ¾ of the points.
     """
     view, alpha = jnp.asarray(view, dtype=float), jnp.asarray(widths(alpha), dtype=float)
 

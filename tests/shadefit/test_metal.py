@@ -15,6 +15,7 @@ def furnace(_towards):
     return jnp.ones(3)
 
 
+@pytest.mark.slow
 def test_white_metal_returns_a_furnace_with_all_scattering_only():
     image = metal_sphere(WHITE, size=12, samples=512, environment=furnace)
     seen = ~np.all(image == BACKDROP, axis=-1)
