@@ -21,6 +21,7 @@ NAVIGATION = {
         "docs/range",
         "docs/certify",
         "docs/brdf",
+        "docs/microfacet",
         "docs/microfacet-sampling",
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),

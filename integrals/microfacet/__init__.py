@@ -7,6 +7,7 @@ has E_avg(α), `fresnel_average` F_avg, and `limits` the limits of E. docs/micro
 `sampling_variance` has the variance of the samplers of visible normals.
 """
 
+from integrals.microfacet.anisotropic import ANISOTROPIC_ALBEDO as ANISOTROPIC_ALBEDO
 from integrals.microfacet.average_albedo import average_albedo as average_albedo
 from integrals.microfacet.average_albedo import average_of_directional as average_of_directional
 from integrals.microfacet.directional_albedo import directional_albedo as directional_albedo

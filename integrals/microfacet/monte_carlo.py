@@ -4,12 +4,10 @@ Normals are drawn as SGGX draws microflakes, from the whole ellipsoid whose uppe
 facets. A visible flake of the lower half reflects light down, so it counts nothing.
 """
 
-from collections.abc import Callable
-
 import jax
 import jax.numpy as jnp
-from jax import Array
 
+from integrals.microfacet.visible_ellipse import Fresnel, white
 from integrals.monte_carlo import Sequence, mean_estimate, unit_points
 from integrals.reference import Estimate
 from shading.microfacet.ggx import Roughness, projected_roughness, widths
@@ -21,7 +19,7 @@ def albedo_by_sampling(
     view: Vector,
     alpha: Roughness,
     *,
-    fresnel: Callable[[Array], Array] = jnp.ones_like,
+    fresnel: Fresnel = white,
     samples: int = 1 << 16,
     sequence: Sequence = "random",
     seed: int = 0,
@@ -35,7 +33,7 @@ def albedo_by_sampling(
     root = jnp.diag(jnp.append(widths(alpha), 1.0))
     sigma = projected_roughness(view, alpha)
 
-    def returned(point: Array) -> Array:
+    def returned(point):
         normal = visible_normal(root, view, point)
         light = reflect(view, normal)
         nu = jnp.maximum(light[2], 0.0)

@@ -26,13 +26,10 @@ from shading.microfacet.ggx import Roughness, widths
 from shading.types import Scalar, Vector
 
 NODES = 96
-AZIMUTHS = 512
+AZIMUTHS = 1024
 
 # λ converges from below. Six steps leave the last one with no more than roundings.
 _STEPS = 6
-# Azimuths at right angles to the view, where x₁ is small, are 1/(1 − 0.9) times denser.
-_DENSER = 0.9
-
 _LEAST_SCALE = 1e-9
 
 Fresnel = Callable[[Float[Array, "..."]], Array]
@@ -80,19 +77,9 @@ def ellipse_rule(view: Array, alpha: Array, fresnel: Fresnel, nodes: int, azimut
     top = jnp.arcsinh(1 / scale)
     rho = scale * jnp.sinh(top * unit)
     rho_weights = unit_weights * top * scale * jnp.cosh(top * unit)
-    # The azimuth at right angles to the axis: d·w = 0 there.
     semi = 1 / jnp.sqrt(1 + shares)
-    tilt = axis * semi
-    tilted = jnp.sum(tilt * tilt)
-    direction = jnp.where(tilted > 0, tilt, jnp.array([1.0, 0.0]))
-    # E does not depend on where the azimuths begin. At normal incidence no slope of it exists.
-    direction = lax.stop_gradient(direction / jnp.sqrt(jnp.sum(direction * direction)))
     turn = 2 * np.pi * np.arange(azimuths) / azimuths
-    inner = turn - _DENSER / 2 * np.sin(2 * turn)
-    beta_weights = 2 * np.pi / azimuths * (1 - _DENSER * np.cos(2 * turn))
-    along, across = np.sin(inner), np.cos(inner)
-    cos_beta = along * direction[0] - across * direction[1]
-    sin_beta = along * direction[1] + across * direction[0]
+    cos_beta, sin_beta = np.cos(turn), np.sin(turn)
 
     radius = jnp.sqrt(1 - jnp.minimum(rho, 1.0))[:, None]
     d_x, d_y = radius * cos_beta * semi[0], radius * sin_beta * semi[1]
@@ -110,7 +97,7 @@ def ellipse_rule(view: Array, alpha: Array, fresnel: Fresnel, nodes: int, azimut
     sigma_view = jnp.sqrt(jnp.sum(stretched * stretched) + mu * mu)
     terms = nu * seen / ((mu * sigma_light + nu * sigma_view) * height)
     terms = terms * fresnel(jnp.minimum(seen / jnp.sqrt(squared), 1.0))
-    total = rho_weights @ (terms @ beta_weights)
+    total = 2 * jnp.pi / azimuths * (rho_weights @ jnp.sum(terms, axis=1))
     return root * total / (jnp.pi * jnp.sqrt(length2 * (root + drop[0]) * (root + drop[1])))
 
 
@@ -125,7 +112,8 @@ def anisotropic_albedo(
     """Return the albedo for a unit vector o = `view` with o·n ≥ 0, and a bound on its error.
 
     `alpha` is α or (αx, αy). `fresnel` maps an array of cosines o·h to reflectances. With the
-    default numbers of points the error is below 1e-10 for min(α) ≥ 0.05 and a ratio up to 10.
+    default numbers of points the value is exact to 1e-10 for min(α) ≥ 0.05 and a ratio up to 10.
+    The bound may be larger there, up to 1e-8, because it comes from ¾ of the points.
     """
     view, alpha = jnp.asarray(view, dtype=float), jnp.asarray(widths(alpha), dtype=float)
 

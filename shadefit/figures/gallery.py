@@ -1,4 +1,4 @@
-"""All pictures by name: of the fuzz BRDF, of samplers, of each other quantity, and the frontier."""
+"""All pictures by name: those of each topic, one of each other quantity, and the frontier."""
 
 from functools import partial
 
@@ -7,6 +7,7 @@ from shadefit.figures.curves import draw_curves
 from shadefit.figures.frontier import draw_frontier
 from shadefit.figures.fuzz_pictures import DRAWN, fuzz_pictures
 from shadefit.figures.maps import draw_errors
+from shadefit.figures.microfacet_pictures import microfacet_pictures
 from shadefit.figures.microfacet_sampling import sampling_pictures
 from shadefit.figures.picture import Picture
 from shadefit.figures.result import draw_data
@@ -35,7 +36,8 @@ def pictures() -> dict[str, Picture]:
         for owner in problems().values()
         if owner not in DRAWN and len(owner.axes) in _DRAW
     }
-    return {**fuzz_pictures(), **sampling_pictures(), **others, "frontier": _FRONTIER}
+    topics = {**fuzz_pictures(), **microfacet_pictures(), **sampling_pictures()}
+    return {**topics, **others, "frontier": _FRONTIER}
 
 
 def errors_picture(owner: Problem) -> Picture:

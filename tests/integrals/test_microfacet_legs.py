@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from integrals.microfacet import (
-    albedo_by_sampling,
+    ANISOTROPIC_ALBEDO,
     anisotropic_albedo,
     average_albedo,
     conductor_average,
@@ -43,7 +43,7 @@ ANISOTROPIC = np.array(
 )
 # α, μ: grazing and normal views, and views in the dip near μ = α.
 POINTS = np.array(
-    [(0.01, 0.01), (0.01, 1.0), (0.02, 1e-4), (0.1, 0.12), (0.3, 0.9), (0.7, 0.3), (1.0, 0.2)]
+    [(0.05, 0.05), (0.05, 1.0), (0.07, 1e-4), (0.1, 0.12), (0.3, 0.9), (0.7, 0.3), (1.0, 0.2)]
 ).T
 
 
@@ -54,10 +54,12 @@ def one_dimensional():
 
 @functools.cache
 def ellipse():
-    def albedo(alpha_x, alpha_y, theta, phi):
-        return anisotropic_albedo(direction(theta, phi), jnp.stack([alpha_x, alpha_y]))
+    return batched(ANISOTROPIC_ALBEDO.quadrature, 4)
 
-    return batched(albedo, 2)
+
+@functools.cache
+def limit():
+    return batched(smooth_limit, 8)
 
 
 def view(mu) -> np.ndarray:
@@ -66,24 +68,22 @@ def view(mu) -> np.ndarray:
 
 def test_ellipse_agrees_with_the_integral_over_the_cosine():
     alpha, mu = POINTS
-    value, error = batched(functools.partial(directional_albedo_by_ellipse, azimuths=256), 8)(
-        mu, alpha
-    )
+    value, error = ellipse()(alpha, alpha, np.arccos(mu), np.linspace(0, 3, len(mu)))
     exact, allowance = one_dimensional()(mu, alpha)
     assert np.all(abs(value - exact) <= error + allowance)
     np.testing.assert_allclose(value, exact, rtol=0, atol=1e-12)
-    assert np.all(error < 1e-10)
+    assert np.all(error < 1e-8)
 
 
 def test_anisotropic_albedo_has_known_values():
     alpha_x, alpha_y, theta, phi, exact = ANISOTROPIC.T
     value, error = ellipse()(alpha_x, alpha_y, np.radians(theta), np.radians(phi))
-    np.testing.assert_allclose(value, exact, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(value, exact, rtol=0, atol=5e-11)
     assert np.all(abs(value - exact) <= error + 1e-12)
     assert np.all(error < 1e-8)
     # Exchanged axes.
     value, _ = ellipse()(alpha_y, alpha_x, np.radians(theta), np.radians(90 - phi))
-    np.testing.assert_allclose(value, exact, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(value, exact, rtol=0, atol=5e-11)
 
 
 @pytest.mark.slow
@@ -96,13 +96,14 @@ def test_anisotropic_albedo_is_exact_to_1e_10_up_to_a_ratio_of_ten():
 
     def fine(alpha_x, alpha_y, theta, phi):
         widths = jnp.stack([alpha_x, alpha_y])
-        return anisotropic_albedo(direction(theta, phi), widths, nodes=160, azimuths=4096)
+        return anisotropic_albedo(direction(theta, phi), widths, nodes=128, azimuths=3072)
 
     truth, allowance = batched(fine, 1)(narrow, wide, theta, phi)
     assert np.all(abs(value - truth) <= error + allowance)
     np.testing.assert_allclose(value, truth, rtol=0, atol=1e-10)
 
 
+@pytest.mark.slow
 def test_ellipse_has_any_fresnel_reflectance():
     """Schlick's reflectance for F0 = 0 gives B of the Fresnel split."""
     mu, alpha = 0.3, 0.25
@@ -111,6 +112,16 @@ def test_ellipse_has_any_fresnel_reflectance():
     assert abs(found.value - 0.0653702498986) < 1e-12
 
 
+@pytest.mark.slow
+def test_ellipse_is_exact_for_small_alpha():
+    alpha, mu = np.array([(0.01, 0.01), (0.01, 1.0), (0.02, 1e-4), (0.03, 0.5)]).T
+    value, error = batched(directional_albedo_by_ellipse, 4)(mu, alpha)
+    exact, allowance = one_dimensional()(mu, alpha)
+    assert np.all(abs(value - exact) <= error + allowance)
+    np.testing.assert_allclose(value, exact, rtol=0, atol=1e-12)
+
+
+@pytest.mark.slow
 def test_derivatives_of_the_ellipse_are_those_of_the_integral_over_the_cosine():
     mu, alpha = np.array([1e-9, 0.05, 0.4, 1.0]), np.array([0.3, 0.1, 1.0, 0.3])
 
@@ -134,17 +145,18 @@ def test_monte_carlo_is_within_five_standard_errors(sequence):
     assert np.all(error < 1e-2)
 
 
-def test_monte_carlo_of_an_anisotropic_metal():
-    alpha_x, alpha_y, theta, phi, exact = ANISOTROPIC[0]
-    at = direction(*np.radians([theta, phi]))
-    value, error = albedo_by_sampling(at, np.array([alpha_x, alpha_y]), samples=1 << 14)
-    assert abs(value - exact) <= 5 * error
+def test_legs_of_the_anisotropic_albedo_agree():
+    alpha_x, alpha_y, theta, phi, exact = ANISOTROPIC.T
+    one = functools.partial(ANISOTROPIC_ALBEDO.monte_carlo, samples=1 << 14)
+    value, error = batched(one, 4)(alpha_x, alpha_y, np.radians(theta), np.radians(phi))
+    assert np.all(abs(value - exact) <= 5 * error)
+    assert ANISOTROPIC_ALBEDO.best_leg == "quadrature"
 
 
 def test_walk_leaves_after_one_reflection_as_often_as_the_albedo_says():
     for alpha, mu in ((0.6, 0.5), (0.1, 0.12), (1.0, 1.0)):
         first, _, total = walk(view(mu), alpha, paths=1 << 14)
-        exact = float(directional_albedo(mu, alpha).value)
+        exact = one_dimensional()(np.array([mu]), np.array([alpha])).value[0]
         assert abs(float(first.value[0]) - exact) <= 5 * float(first.error[0])
         # With F = 1 everything leaves, but for paths that were dropped.
         assert 1 - 1e-4 < float(total.value[0]) <= 1
@@ -171,7 +183,7 @@ def test_walk_refuses_bad_input():
 
 def test_limit_of_smooth_surfaces():
     x = np.array([0.0, 1e-3, 0.2, 1.1, 4.0, 50.0])
-    value, error = batched(smooth_limit, 8)(x)
+    value, error = limit()(x)
 
     def integrand(y, x):
         across = x * np.sqrt(1 + y * y) + y * np.sqrt(1 + x * x)
@@ -186,14 +198,15 @@ def test_limit_of_smooth_surfaces():
     slope = float(mp.ellipe(-3) / 2 - 1)
     assert abs(value[0] - 1) < 1e-11
     np.testing.assert_allclose((1 - value[1]) / x[1], slope, rtol=1e-2)
-    np.testing.assert_allclose(jax.grad(lambda x: smooth_limit(x).value)(1e-9), -slope, rtol=1e-6)
-    assert np.isfinite(jax.grad(lambda x: smooth_limit(x).value)(0.0))
+    steep = batched(jax.grad(lambda x: smooth_limit(x).value), 2)(np.array([0.0, 1e-9]))
+    np.testing.assert_allclose(steep, -slope, rtol=1e-5)
     np.testing.assert_allclose((1 - value[5]) * 2 * x[5] ** 2, 1, rtol=4e-2)
 
 
 def test_a_ninth_of_the_energy_is_missing_however_smooth_the_surface_is():
-    one = jax.jit(lambda x: smooth_limit(x).value)
-    lowest = minimize_scalar(lambda x: float(one(x)), bounds=(0.5, 2), options={"xatol": 1e-7})
+    lowest = minimize_scalar(
+        lambda x: limit()(np.array([x])).value[0], bounds=(0.5, 2), options={"xatol": 1e-7}
+    )
     assert abs(lowest.fun - 0.8914527) < 1e-7
     assert abs(lowest.x - 1.1062) < 1e-4
     # E(αx, α) tends to e(x) quadratically in α.
@@ -214,6 +227,7 @@ def test_expansions_of_the_directional_albedo():
     np.testing.assert_allclose(missing - alpha * np.log(1 / mu), constant, rtol=0, atol=2e-4)
 
 
+@pytest.mark.slow
 def test_expansion_of_the_average_albedo():
     alpha = 0.01
     leading = np.log(1 / alpha) + 3 / 5 + 19 / 15 * np.log(2) - 9 / 10 * np.log(3)
@@ -243,7 +257,6 @@ def test_edges_have_closed_forms():
         rtol=0,
         atol=1e-11,
     )
-    np.testing.assert_allclose(normal_albedo(1.0), 1 - np.log(2), rtol=1e-12)
 
 
 def test_average_of_a_dielectric_has_a_closed_form():
@@ -252,6 +265,11 @@ def test_average_of_a_dielectric_has_a_closed_form():
     other, allowance = batched(dielectric_average_by_quadrature, 12)(index)
     assert np.all(abs(value - other) <= error + allowance)
     np.testing.assert_allclose(value, other, rtol=0, atol=1e-14)
+
+
+@pytest.mark.slow
+def test_slope_of_the_average_of_a_dielectric():
+    index = np.array([0.3, 0.7, 1 - 1e-6, 1.0, 1 + 1e-9, 1.01, 1.33, 1.5, 2.0, 2.01, 4.0, 10.0])
     slopes = batched(jax.grad(lambda n: dielectric_average(n).value), 12)(index)
     assert np.isfinite(slopes).all()
     np.testing.assert_allclose(slopes[3:5], 1 / 3, rtol=1e-6)
@@ -263,6 +281,7 @@ def test_average_of_a_dielectric_has_a_closed_form():
     np.testing.assert_allclose(slopes[abs(index - 1) > 0.1], expected, rtol=0, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_average_of_schlick_and_of_conductors():
     def average(function):
         return quad(lambda x: 2 * x * float(function(x)), 0, 1, epsabs=1e-13, limit=200)[0]
