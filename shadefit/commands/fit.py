@@ -38,8 +38,9 @@ def fit(
         list[str],
         typer.Option(
             help="Form to fit; may be given again. rational:M,N (degrees above and below; of "
-            "several axes the total degrees), polynomial:N, chebyshev:N or N,M for each axis; of "
-            "one axis exponentials:TERMS, poles:POLES,DEGREE, piecewise:KNOTS."
+            "several axes the total degrees), polynomial:N, chebyshev:N or N,M for each axis, "
+            "piecewise:KNOTS likewise; exponentials:TERMS,DEGREE along the first axis, whose "
+            "coefficients have this degree in the others; of one axis poles:POLES,DEGREE."
         ),
     ],
     sigma: Annotated[
@@ -212,17 +213,20 @@ _SHAPES: "dict[str, Callable[[Problem, list[int], str], Any]]" = {
     "chebyshev": lambda owner, counts, name: owner.chebyshev(
         counts * len(owner.axes) if len(counts) == 1 else counts, name=name
     ),
-    "exponentials": lambda owner, counts, name: owner.exponentials(counts[0], name=name),
+    "exponentials": lambda owner, counts, name: owner.exponentials(
+        counts[0], degree=sum(counts[1:]), name=name
+    ),
     "poles": lambda owner, counts, name: owner.pole_sum(*counts, name=name),
-    "piecewise": lambda owner, counts, name: owner.piecewise_linear(counts[0], name=name),
+    "piecewise": lambda owner, counts, name: owner.piecewise_linear(
+        counts[0] if len(counts) == 1 else counts, name=name
+    ),
 }
 # How many numbers a shape takes; those that are not here take one, or one for each axis.
 _COUNTS = {
     "rational": (2, 2),
     "polynomial": (1, 1),
-    "exponentials": (1, 1),
+    "exponentials": (1, 2),
     "poles": (2, 2),
-    "piecewise": (1, 1),
 }
 
 
