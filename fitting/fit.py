@@ -14,6 +14,7 @@ from fitting.proofs.least_error import least_error
 from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
 from fitting.solvers.exchange import Exchange, ScatteredFit
+from fitting.solvers.given import Given
 from fitting.solvers.on_grid import GridFit, OnGrid, Progress
 from programs.bounding.branch_and_bound import Bounds
 from programs.bounding.denominators import DenominatorBound
@@ -77,7 +78,7 @@ def fit(
     nodes: int | None = None,
     measure: str = "uniform",
     progress: Progress = lambda _: None,
-    exchange: Exchange | None = None,
+    exchange: Exchange | Given | None = None,
 ) -> Fit:
     """Fit a form to the exact values of its quantity.
 
@@ -89,7 +90,8 @@ def fit(
     * `measure`: the name of one of the quantity's measures, which weigh the errors. A quantity that
       has only one measure takes that one.
     * `progress`: a function that is called with a short text before each step.
-    * `exchange`: the solver on scattered points; None for the default one.
+    * `exchange`: the solver on scattered points, or coefficients in its place; None for the default
+      solver.
 
     Raises ValueError for a number of nodes or a measure that is not allowed, for a fit with a
     denominator that is not proven to be positive, and for a bounded goal if the bounds are not
