@@ -21,7 +21,7 @@ def quantities(noise: float = 0.0) -> list[Problem]:
     ]
 
 
-@pytest.mark.parametrize("norm", ["l2", "linf"])
+@pytest.mark.parametrize("norm", ["l2", pytest.param("linf", marks=pytest.mark.slow)])
 def test_a_fit_finds_the_numerators_and_the_denominator_that_made_the_data(norm):
     found = fit_with_shared_denominator(quantities(), powers(1), powers(2), norm=norm)
     for result, top in zip(found, ([1, 1], [2, -0.5], [0.25, 0.75]), strict=True):
@@ -33,6 +33,7 @@ def test_a_fit_finds_the_numerators_and_the_denominator_that_made_the_data(norm)
         assert "all 3 with one denominator" in result.table.provenance.solver
 
 
+@pytest.mark.slow
 def test_the_denominator_is_equal_to_the_last_bit_and_costs_little_accuracy():
     own = quantities(noise=1e-3)
     found = fit_with_shared_denominator(own, powers(1), powers(2), rounding="float32")
@@ -44,6 +45,7 @@ def test_the_denominator_is_equal_to_the_last_bit_and_costs_little_accuracy():
         assert problem.fit("alone").fit.on_grid.rms <= result.fit.on_grid.rms * (1 + 1e-6)
 
 
+@pytest.mark.slow
 def test_functions_are_fitted_together_too():
     lower, upper = (
         Problem(name, [Axis("x", 0.0, 1.0)], closed_form(call))
