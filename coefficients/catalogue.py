@@ -146,6 +146,9 @@ def entry_of(table: Table, name: str) -> Entry:
     form or its own expression.
     """
     known = problems().get(table.quantity)
+    if known is not None and known.topic and table.about is not None:
+        # A user's quantity, such as the column R of data, has the name of a built-in one.
+        known = None
     if known is not None and known.has_form(table.form, table.shape):
         fitted = fitted_form(table, known)
         if table.expression is not None:

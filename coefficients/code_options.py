@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from coefficients.catalogue import Entry
 from programs import Function, Record
-from programs.functions import Layout
+from programs.functions import Layout, function
 from quantities import Problem
 
 Interface = Literal["listing", "material"]
@@ -26,6 +26,8 @@ class CodeOptions:
     * `cosines`: whether arguments that are angles are replaced by their cosines.
     * `prefix`: what the names of functions and structures begin with.
     * `namespace`: that of all functions, in languages that have namespaces.
+    * `together`: the name of one function that returns the values of all tables in an array; what
+      they share, such as a denominator, is computed once. None: each table has its own function.
     * `bundle`: a program that hosts shaders, whose entry points are added (`coefficients.bundles`).
     """
 
@@ -35,6 +37,7 @@ class CodeOptions:
     prefix: str = ""
     namespace: str | None = None
     bundle: str | None = None
+    together: str | None = None
 
 
 DEFAULTS = CodeOptions()
@@ -74,7 +77,7 @@ def shaped(entry: Entry, options: CodeOptions) -> Entry:
 def words_of(options: CodeOptions) -> list[str]:
     """Return the words of a command line that stand for options, but for those by default."""
     words = []
-    for name in ("interface", "layout", "prefix", "namespace", "bundle"):
+    for name in ("interface", "layout", "prefix", "namespace", "bundle", "together"):
         value = getattr(options, name)
         if value != getattr(DEFAULTS, name):
             words += [f"--{name}", value]
@@ -108,6 +111,32 @@ def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function
         each if each.record is None else replace(each, record=replace(each.record, layout=layout))
         for each in functions
     )
+
+
+def joined(called: Sequence[tuple[Function, ...]], name: str) -> Function:
+    """Return one function that returns the values of several functions of the same arguments.
+
+    `called` has the functions of each table. Raises ValueError for a single table, for one of two
+    functions, and for tables whose functions have other arguments.
+    """
+    if len(called) < 2:
+        raise ValueError(f"together {name!r} is of one table; allowed: at least 2")
+    for first, *more in called:
+        if more:
+            raise ValueError(f"together {name!r}: {more[-1].name} is one of two functions")
+        if first.parameters != called[0][0].parameters:
+            raise ValueError(
+                f"together {name!r}: {first.name} has other arguments or domains than "
+                f"{called[0][0].name}"
+            )
+    calls = [each.call for (each,) in called]
+
+    def values(*given: Any) -> tuple[Any, ...]:
+        return tuple(call(*given) for call in calls)
+
+    listed = ", ".join(each.name for (each,) in called)
+    summary = f"The values of {listed}, in this order; clamps to the domain."
+    return function(name, called[0][0].parameters, values, summary, len(calls), "values")
 
 
 def prefixed(functions: tuple[Function, ...], prefix: str) -> tuple[Function, ...]:

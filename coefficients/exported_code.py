@@ -10,8 +10,16 @@ import numpy as np
 
 from coefficients.bundles import bundle
 from coefficients.catalogue import Entry
-from coefficients.code_header import header_of
-from coefficients.code_options import DEFAULTS, CodeOptions, prefixed, require_use, shaped, words_of
+from coefficients.code_header import cost_text, costs, header_of
+from coefficients.code_options import (
+    DEFAULTS,
+    CodeOptions,
+    joined,
+    prefixed,
+    require_use,
+    shaped,
+    words_of,
+)
 from fitting.points.grids import sobol_points
 from fitting.points.scattered import data_points
 from programs import (
@@ -123,11 +131,17 @@ def source_file(
             f"bundle {options.bundle!r} holds no code; allowed are constants 'inline' and layout "
             f"{DEFAULTS.layout!r}"
         )
-    guard = _guard(listed, precision, function_name, options.prefix)
+    guard = _guard(listed, precision, function_name or options.together, options.prefix)
+    printed = called
+    if options.together is not None:
+        if hosted is not None:
+            raise ValueError(f"together {options.together!r}: allowed without a bundle")
+        whole = joined(called, options.prefix + options.together)
+        printed = [*((),) * (len(called) - 1), (whole,)]
 
     def written(headers: Sequence[Mapping[str, str]]) -> str:
         source = write_sections(
-            [Section(*pair) for pair in zip(called, headers, strict=True)],
+            [Section(*pair) for pair in zip(printed, headers, strict=True)],
             spelled,
             kind,
             constants=constants,
@@ -154,8 +168,12 @@ def source_file(
         trial = trial_of(entry, kind)
         trial = replace(trial, calls=replace(trial.calls, functions=functions))
         bare = write_source(functions, spelled, kind, constants=constants)
-        run = bare if holds_code else None
+        # The function of all tables is not run for the error of one.
+        run = bare if holds_code and printed is called else None
         headers.append(header_of(entry, trial, spelled.key, run, made_by or shlex.join(command)))
+    if printed is not called:
+        ((name, cost),) = costs(printed[-1]).items()
+        headers[-1] |= {"Cost of all together": f"{name}: {cost_text(cost)}"}
     headers[0] = {LICENCE_LABEL: LICENCE, **headers[0]}
     return written(headers)
 

@@ -91,12 +91,10 @@ class Search:
         """Fit every candidate within the budget. Raises ValueError if no fit succeeds.
 
         `progress` is called with what is done now, the number of candidates that were tried in this
-        run, and the number of those to try, which is 0 at first. Candidates of an earlier run do
-        not count.
+        run, and the number of those to try. Candidates of an earlier run do not count.
         """
         found: list[Found] = []
         refused, tried, last = 0, 0, None
-        progress("which forms to try", 0, 0)
         # Operations are counted without a fit, so that forms beyond the budget cost no time.
         chosen = [form for form in self.candidates() if self._is_within_budget(form)]
         made = [self._made_before(form) for form in chosen]

@@ -16,6 +16,7 @@ from fitting.proofs.pole_proof import certify_denominators
 from fitting.proofs.range_proof import certify_range
 from fitting.solvers.elsewhere import Counterexamples
 from fitting.solvers.exchange import Exchange, ScatteredFit
+from fitting.solvers.given import Given
 from fitting.solvers.on_grid import GridFit, OnGrid, Progress
 from programs.bounding.branch_and_bound import Bounds
 from programs.bounding.denominators import DenominatorBound
@@ -82,7 +83,7 @@ def fit(
     nodes: int | None = None,
     measure: str = "uniform",
     progress: Progress = lambda _: None,
-    exchange: Exchange | None = None,
+    exchange: Exchange | Given | None = None,
     counterexamples: Counterexamples | None = None,
 ) -> Fit:
     """Fit a form to the exact values of its quantity.
@@ -95,7 +96,8 @@ def fit(
     * `measure`: the name of one of the quantity's measures, which weigh the errors. A quantity that
       has only one measure takes that one.
     * `progress`: a function that is called with a short text before each step.
-    * `exchange`: the solver on scattered points; None for the default one.
+    * `exchange`: the solver on scattered points, or coefficients in its place; None for the default
+      solver.
     * `counterexamples`: a search for larger errors than those at the points of a fit of the largest
       error, such as `Problem.counterexamples()` returns.
 

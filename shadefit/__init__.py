@@ -8,6 +8,7 @@ evaluated: `jax.config.update("jax_enable_x64", True)`.
   `closed_form`, a `quadrature`, `hemisphere` or `sphere` integral, or `monte_carlo` samples, each
   with a stated error; or data, from a `table` in a file or `samples` in arrays. `Published` has
   constants in print, `powers` the exponents of a polynomial. `Problem.fit` returns a `Result`.
+  `fit_with_shared_denominator` fits several quantities together.
 * Exact values: `PS`, `G`, `Q`, `R` and `VELVET` are the references of the fuzz BRDF.
   `make_reference` makes a `Reference` without a quantity. `Sampling`, `Estimate` and `leg` are for
   a reference that is written out in full.
@@ -72,6 +73,9 @@ if TYPE_CHECKING:
     from quantities.problem import Published as Published
     from shadefit.declaration import Problem as Problem
     from shadefit.result import Result as Result
+    from shadefit.shared_denominator import (
+        fit_with_shared_denominator as fit_with_shared_denominator,
+    )
 
 _HOMES = {
     "coefficients.catalogue": ("Entry", "load", "resolve"),
@@ -96,6 +100,7 @@ _HOMES = {
     "quantities.problem": ("Published",),
     "shadefit.declaration": ("Problem",),
     "shadefit.result": ("Result",),
+    "shadefit.shared_denominator": ("fit_with_shared_denominator",),
 }
 _MODULES = {name: module for module, names in _HOMES.items() for name in names}
 

@@ -183,9 +183,16 @@ class Problem(Quantity):
         name: str = "exponentials",
         domain: Mapping[str, tuple[float | int, float | int]] | None = None,
         constant: bool = False,
+        along: str = "",
+        degree: int = 0,
     ) -> Form:
-        """Add Σ aₖ exp(−bₖ x), with a constant if wanted, and return it; for one axis."""
-        return self._shaped(exponentials, terms, name=name, domain=domain, constant=constant)
+        """Add Σ aₖ exp(−bₖ x), with a constant if wanted, and return it.
+
+        x is the axis called `along`, by default the first. The coefficients are polynomials of a
+        total `degree` in the other axes.
+        """
+        own = {"constant": constant, "along": along, "degree": degree}
+        return self._shaped(exponentials, terms, name=name, domain=domain, **own)
 
     def pole_sum(
         self,
@@ -201,12 +208,16 @@ class Problem(Quantity):
 
     def piecewise_linear(
         self,
-        knots: int | Sequence[float | int],
+        knots: int | Sequence,
         *,
         name: str = "piecewise",
         domain: Mapping[str, tuple[float | int, float | int]] | None = None,
     ) -> Form:
-        """Add a line between values at knots, a number of them or a list; for one axis."""
+        """Add lines between values at knots, a number of them or a list, and return the form.
+
+        With several axes the knots are those of a grid: a number for all, or a sequence with a
+        number or a list for each.
+        """
         return self._shaped(piecewise_linear, knots, name=name, domain=domain)
 
     def _shaped(

@@ -1,4 +1,4 @@
-"""Piecewise linear forms of one axis, with fixed knots."""
+"""Piecewise linear forms, with fixed knots: on one axis, or on a tensor grid of several."""
 
 import itertools
 from collections.abc import Sequence
@@ -10,54 +10,116 @@ import numpy as np
 from fitting.equation import equation_of, free_variable
 from fitting.form import Form, Stage
 from fitting.shapes.chebyshev_sums import require_finite
-from fitting.shapes.exponential_sums import only_axis
-from fitting.shapes.monomial_sums import free_letter
+from fitting.shapes.monomial_sums import coefficient_name, free_letter
 from integrals.reference import Axis, Reference
 from programs.printing.formula import number_text
 
 
 def piecewise_linear(
     reference: Reference,
-    knots: int | Sequence[float] | np.ndarray,
+    knots: int | Sequence | np.ndarray,
     *,
     name: str,
     axes: tuple[Axis, ...] | None = None,
 ) -> Form:
-    """Return the form that is linear between knots of one axis; c0, c1 … are its values there.
+    """Return the form that is linear in each axis between its knots; its coefficients are values.
 
-    `knots` are increasing places on the axis, or their number: they are then distributed as the
-    axis's `scale` says, the ends included. The form is constant before the first and after the last
-    knot. It is linear in the coefficients, and has no divisor. Raises ValueError for more than one
-    axis, for knots that are not increasing or are outside the domain, and for less than two.
+    `knots` are increasing places on the only axis, or their number: they are then distributed as
+    the axis's `scale` says, the ends included. With several axes `knots` is a number for all, or a
+    sequence with places or a number for each: the knots are those of a tensor grid. The values at
+    them are called c0, c1 …; for several axes c00, c01 …, the last axis first. The form is constant
+    before the first and after the last knot. It is linear in the coefficients, and has no divisor.
+    Raises ValueError for knots that are not increasing or are outside the domain, for less than
+    two, and for another number of axes.
     """
     axes = reference.axes if axes is None else axes
-    axis = only_axis(name, axes)
-    x = _places(name, knots, axis)
-    letter = free_letter("c", [axis.name, axis.symbol])
-    names = [f"{letter}{k}" for k in range(len(x))]
-
-    def value(c, at) -> Any:
-        total = jnp.asarray(c[0])
-        # Each piece is a ramp from 0 to 1. Outside its piece it is exactly 0 or 1, so that an
-        # interval bound of the sum is no wider than that of one piece.
-        for k, (left, right) in enumerate(itertools.pairwise(x)):
-            ramp = (at - left) * (1 / (right - left))
-            if left > axis.lower:
-                ramp = jnp.maximum(ramp, 0.0)
-            if right < axis.upper:
-                ramp = jnp.minimum(ramp, 1.0)
-            total = total + (c[k + 1] - c[k]) * ramp
-        return total
-
-    v = free_variable([axis.name, axis.symbol])
-    parts = [
-        f"({names[k + 1]} − {names[k]})"
-        f"·ramp({_difference(axis.symbol, left)}/{number_text(right - left)})"
-        for k, (left, right) in enumerate(itertools.pairwise(x))
+    places = [
+        _places(name, each, axis)
+        for each, axis in zip(_of_axes(name, knots, axes), axes, strict=True)
     ]
-    text = " + ".join([names[0], *parts])
-    equation = equation_of(reference.symbol, text, [f"ramp({v}) = min(max({v}, 0), 1)"])
+    taken = [text for axis in axes for text in (axis.name, axis.symbol)]
+    letter = free_letter("c", taken)
+    shape = [len(each) for each in places]
+    names = [coefficient_name(letter, each) for each in np.ndindex(*shape)]
+
+    def value(c, *point) -> Any:
+        # The ramps of an axis are computed once, and used for every row of the grid.
+        ramps = [_ramps(*each) for each in zip(point, places, axes, strict=True)]
+        return jnp.asarray(_interpolated([c[k] for k in range(len(names))], ramps))
+
+    equation = equation_of(reference.symbol, *_text(names, places, axes, taken))
     return Form(name, equation, reference, axes, names, (Stage(value),))
+
+
+def _of_axes(name: str, knots: Any, axes: tuple[Axis, ...]) -> list:
+    """Return the knots of each axis, or their number."""
+    if len(axes) == 1:
+        return [knots]
+    given = [knots] * len(axes) if isinstance(knots, int | np.integer) else list(knots)
+    if len(given) != len(axes):
+        names = ", ".join(axis.name for axis in axes)
+        raise ValueError(f"{name}: {len(given)} knots: allowed are one number, or those of {names}")
+    return given
+
+
+def _ramps(at: Any, places: list[float], axis: Axis) -> list[Any]:
+    """Return a ramp from 0 to 1 for each piece of an axis.
+
+    Outside its piece it is exactly 0 or 1, so that an interval bound of the sum is no wider than
+    that of one piece.
+    """
+    found = []
+    for left, right in itertools.pairwise(places):
+        ramp = (at - left) * (1 / (right - left))
+        if left > axis.lower:
+            ramp = jnp.maximum(ramp, 0.0)
+        if right < axis.upper:
+            ramp = jnp.minimum(ramp, 1.0)
+        found.append(ramp)
+    return found
+
+
+def _interpolated(values: list[Any], ramps: list[list[Any]]) -> Any:
+    """Interpolate along the first axis between values that are interpolated along the others."""
+    if not ramps:
+        return values[0]
+    size = len(values) // (len(ramps[0]) + 1)
+    rows = [_interpolated(values[k : k + size], ramps[1:]) for k in range(0, len(values), size)]
+    total = rows[0]
+    for ramp, (before, after) in zip(ramps[0], itertools.pairwise(rows), strict=True):
+        total = total + (after - before) * ramp
+    return total
+
+
+def _text(
+    names: list[str], places: list[list[float]], axes: tuple[Axis, ...], taken: list[str]
+) -> tuple[str, list[str]]:
+    """Return the form as text, and the statements before it: a ramp, and rows of the grid."""
+    v = free_variable(taken)
+    statements, row = [f"ramp({v}) = min(max({v}, 0), 1)"], free_letter("r", taken)
+    values = names
+    for depth in range(len(axes) - 1, -1, -1):
+        size = len(places[depth])
+        texts = [
+            _line(values[k : k + size], places[depth], axes[depth])
+            for k in range(0, len(values), size)
+        ]
+        if depth == 0:
+            return texts[0], statements
+        shape = [len(each) for each in places[:depth]]
+        values = [coefficient_name(row, each) for each in np.ndindex(*shape)]
+        statements += [f"{left} = {text}" for left, text in zip(values, texts, strict=True)]
+    raise AssertionError("there is at least one axis")
+
+
+def _line(values: Sequence[str], places: list[float], axis: Axis) -> str:
+    parts = [
+        f"({after} − {before})·ramp({_difference(axis.symbol, left)}/{number_text(right - left)})"
+        for (before, after), (left, right) in zip(
+            itertools.pairwise(values), itertools.pairwise(places), strict=True
+        )
+    ]
+    return " + ".join([values[0], *parts])
 
 
 def _difference(symbol: str, left: float) -> str:
@@ -65,7 +127,7 @@ def _difference(symbol: str, left: float) -> str:
     return f"({symbol} {sign} {number_text(abs(left))})" if left else symbol
 
 
-def _places(name: str, knots, axis: Axis) -> list[float]:
+def _places(name: str, knots: Any, axis: Axis) -> list[float]:
     if isinstance(knots, int | np.integer):
         require_finite(name, axis)
         places = axis.place(np.linspace(0, 1, max(knots, 0)))

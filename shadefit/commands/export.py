@@ -72,6 +72,14 @@ def export(
     namespace: Annotated[
         str | None, typer.Option(help="Namespace of the functions (cpp, cuda, hlsl, metal, slang).")
     ] = None,
+    together: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of one function that returns the values of all tables, and computes once "
+            "what they share, such as a denominator.",
+            metavar="NAME",
+        ),
+    ] = None,
     bundle: Annotated[
         str | None,
         typer.Option(
@@ -113,6 +121,7 @@ def export(
         "prefix": prefix,
         "namespace": namespace,
         "bundle": bundle,
+        "together": together,
     }
     if key == _JSON:
         for option, given in for_code.items():
@@ -131,6 +140,7 @@ def export(
             prefix=prefix or "",
             namespace=namespace,
             bundle=bundle,
+            together=together,
         )
         entries = [resolve(each) for each in tables]
         text = source_file(entries, key, precision, name, constants or "inline", options)

@@ -22,6 +22,7 @@ from shadefit.commands.options import (
 )
 
 if TYPE_CHECKING:
+    from fitting.second_opinion import SecondOpinion as Opinion
     from shadefit.declaration import Problem
     from shadefit.result import Result
 
@@ -33,13 +34,19 @@ _HOLD_OUT = 5
 def fit(
     data: Annotated[Path, typer.Argument(help="File of columns: CSV with a header, NPY or NPZ.")],
     x: Annotated[str, typer.Option("--x", help="Columns of the axes, separated by commas.")],
-    y: Annotated[str, typer.Option("--y", help="Column of the values.")],
+    y: Annotated[
+        str,
+        typer.Option(
+            "--y", help="Column of the values; with --shared-denominator several, as in R,G,B."
+        ),
+    ],
     form: Annotated[
         list[str],
         typer.Option(
             help="Form to fit; may be given again. rational:M,N (degrees above and below; of "
-            "several axes the total degrees), polynomial:N, chebyshev:N or N,M for each axis; of "
-            "one axis exponentials:TERMS, poles:POLES,DEGREE, piecewise:KNOTS."
+            "several axes the total degrees), polynomial:N, chebyshev:N or N,M for each axis, "
+            "piecewise:KNOTS likewise; exponentials:TERMS,DEGREE along the first axis, whose "
+            "coefficients have this degree in the others; of one axis poles:POLES,DEGREE."
         ),
     ],
     sigma: Annotated[
@@ -52,6 +59,14 @@ def fit(
             "5, or 0 for fewer than 100 rows."
         ),
     ] = None,
+    shared_denominator: Annotated[
+        bool,
+        typer.Option(
+            "--shared-denominator",
+            help="Fit the columns of --y together by rationals with one denominator. shadefit "
+            "export A B --together NAME then computes it once.",
+        ),
+    ] = False,
     name: Annotated[
         str | None, typer.Option(help="Name of the quantity; by default the column of the values.")
     ] = None,
@@ -76,30 +91,47 @@ def fit(
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
     from integrals.data import table
+    from shadefit.commands.shared_fits import shared_fits
     from shadefit.outputs import FitOutput
     from shadefit.terminal import print_json
 
     columns = [part.strip() for part in x.split(",")]
-    found = table(data, columns, y, sigma)
+    wanted = [part.strip() for part in y.split(",")] if shared_denominator else [y]
+    found = table(data, columns, wanted[0], sigma)
     if hold_out is None:
         hold_out = 0 if len(found.values) < _FEW else _HOLD_OUT
-    found = table(data, columns, y, sigma, hold_out)
-    owner = _problem(found, columns, name or y, shader, data)
-    for each in form:
-        _add(owner, each)
     goal = goal_fields(norm, side, rounding, relative, bounded)
-    if out is not None:
-        require_writable(out)
     command = ["shadefit", "fit", str(data), "--x", x, "--y", y]
     command += [] if sigma is None else ["--sigma", sigma]
     command += ["--hold-out", str(hold_out)]
-    results, refused = _fits(owner, goal, shlex.join(command), form)
+    if shared_denominator and (name or shader or second_opinion):
+        raise ValueError("--shared-denominator: names and a second opinion are for one column")
+    owners = [
+        _problem(
+            table(data, columns, each, sigma, hold_out),
+            columns,
+            each if shared_denominator else name or each,
+            shader,
+            data,
+        )
+        for each in wanted
+    ]
+    if out is not None:
+        require_writable(out)
+    refused: list[str] = []
+    if shared_denominator:
+        results = shared_fits(owners, form, goal, shlex.join([*command, "--shared-denominator"]))
+    else:
+        for each in form:
+            _add(owners[0], each)
+        results, refused = _fits(owners[0], goal, shlex.join(command), form)
     for reason in refused:
         print(f"refused: {reason}", file=sys.stderr)
     opinions = [each.second_opinion() if second_opinion else None for each in results]
     several = len(form) > 1
     files = [
-        out and out / f"{owner.name}{f'-{each.fit.fitted.form.name}' if several else ''}.json"
+        out
+        and out / f"{each.problem.name}{f'-{each.fit.fitted.form.name}' if several else ''}.json"
         for each in results
     ]
     for each, file in zip(results, files, strict=True):
@@ -114,14 +146,20 @@ def fit(
         ]
         print_json(FitOutput(tables=records))
         return
+    _print(results, files, opinions)
+    if several:
+        _print_together(results)
+
+
+def _print(
+    results: "list[Result]", files: "list[Path | None]", opinions: "list[Opinion | None]"
+) -> None:
     for each, file, opinion in zip(results, files, opinions, strict=True):
         print(each)
         if opinion is not None:
             print(opinion_text(opinion))
         if file is not None:
             print(file)
-    if several:
-        _print_together(results)
 
 
 def _fits(
@@ -212,17 +250,20 @@ _SHAPES: "dict[str, Callable[[Problem, list[int], str], Any]]" = {
     "chebyshev": lambda owner, counts, name: owner.chebyshev(
         counts * len(owner.axes) if len(counts) == 1 else counts, name=name
     ),
-    "exponentials": lambda owner, counts, name: owner.exponentials(counts[0], name=name),
+    "exponentials": lambda owner, counts, name: owner.exponentials(
+        counts[0], degree=sum(counts[1:]), name=name
+    ),
     "poles": lambda owner, counts, name: owner.pole_sum(*counts, name=name),
-    "piecewise": lambda owner, counts, name: owner.piecewise_linear(counts[0], name=name),
+    "piecewise": lambda owner, counts, name: owner.piecewise_linear(
+        counts[0] if len(counts) == 1 else counts, name=name
+    ),
 }
 # How many numbers a shape takes; those that are not here take one, or one for each axis.
 _COUNTS = {
     "rational": (2, 2),
     "polynomial": (1, 1),
-    "exponentials": (1, 1),
+    "exponentials": (1, 2),
     "poles": (2, 2),
-    "piecewise": (1, 1),
 }
 
 

@@ -95,6 +95,7 @@ def search(
             line.show(f"{quantity}: {stage}", done, total)
             in_pipe(f"{quantity}: {stage}", done, total)
 
+        tell("which forms to try", 0, 0)
         result = wanted.run(tell)
     drawn = out / f"{quantity}-frontier"
     for extension, data in draw(known[quantity], result).items():

@@ -31,6 +31,10 @@ SHAPES = {
     "a sum of poles": pole_sum(LINE, 2, 1, name="p", of=lambda eta: 1 / eta),
     "a sum of exponentials": exponentials(LINE, 3, name="e", constant=True),
     "a monotone sum of exponentials": exponentials(LINE, 2, name="e", monotone=True),
+    "a sum of exponentials with coefficients of another axis": exponentials(
+        TOY, 2, name="e", constant=True, along="y", degree=2
+    ),
+    "pieces on a grid": piecewise_linear(TOY, (3, [-0.5, 0.5, 1.5]), name="p"),
     "Chebyshev polynomials": chebyshev(LINE, 5, name="c"),
     "Chebyshev polynomials of two axes": chebyshev(TOY, (2, 3), name="c"),
     "pieces of lines": piecewise_linear(LINE, 7, name="p"),

@@ -61,8 +61,36 @@ def test_a_monotone_sum_is_positive_and_falls_whatever_the_coefficients():
     assert operations(form, c) == operations(exponentials(LINE, 2, name="e", constant=True), c)
 
 
-def test_several_axes_and_no_terms_are_refused():
-    with pytest.raises(ValueError, match="e has the axes x, y: allowed is one axis"):
-        exponentials(TOY, 2, name="e")
-    with pytest.raises(ValueError, match="e: terms = 0: at least 1 is needed"):
-        exponentials(LINE, 0, name="e")
+def test_the_coefficients_may_be_polynomials_of_another_axis():
+    form = exponentials(TOY, 1, name="e", degree=2, along="x", constant=True)
+    assert form.coefficient_names == [
+        f"{part}_{k}" for part in ("c0", "a1", "b1") for k in range(3)
+    ]
+    c, (x, y) = np.random.default_rng(5).normal(size=9), (0.3, -0.7)
+    at = [np.polyval(part[::-1], y) for part in np.reshape(c, (3, 3))]
+    assert float(form(c, x, y)) == pytest.approx(at[0] + at[1] * np.exp(-at[2] * x), rel=1e-13)
+
+
+def test_a_fit_finds_amplitudes_and_rates_that_depend_on_another_axis():
+    made = replace(
+        TOY,
+        closed_form=lambda x, y: Estimate(
+            (1 + 0.5 * y) * jnp.exp(-(2 + 0.3 * y) * x), jnp.full((), 1e-15)
+        ),
+    )
+    found = fit(exponentials(made, 1, name="e", degree=1))
+    np.testing.assert_allclose(found.fitted.coefficients, [1, 0.5, 2, 0.3], rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("reference", "options", "message"),
+    [
+        (TOY, {"monotone": True}, "e has the axes x, y: monotone allows one axis"),
+        (TOY, {"along": "z"}, "e: along = 'z': allowed are x, y"),
+        (LINE, {"terms": 0}, "e: terms = 0, degree 0: at least 1 and 0 are needed"),
+        (LINE, {"degree": 1}, "e: degree = 1: there is no axis but eta"),
+    ],
+)
+def test_what_is_no_sum_of_exponentials_is_refused(reference, options, message):
+    with pytest.raises(ValueError, match=message):
+        exponentials(reference, **{"terms": 2, "name": "e", **options})

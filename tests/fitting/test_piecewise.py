@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.interpolate import RegularGridInterpolator
 
 from fitting.fit import fit
 from fitting.form import traced
@@ -67,9 +68,39 @@ def test_bad_knots_are_refused(knots, message):
         piecewise_linear(LINE, knots, name="p")
 
 
-def test_several_axes_and_endless_ones_are_refused():
-    with pytest.raises(ValueError, match="allowed is one axis"):
-        piecewise_linear(TOY, 3, name="p")
+@pytest.mark.parametrize("knots", [4, (3, 4), ([0.0, 0.2, 1.0], 5), ([0.1, 0.6], [-0.5, 0, 1.5])])
+def test_on_a_grid_of_two_axes_values_are_interpolated_in_both(knots):
+    form = piecewise_linear(TOY, knots, name="p")
+    each = (knots, knots) if isinstance(knots, int) else knots
+    lines = [
+        np.linspace(axis.lower, axis.upper, n) if isinstance(n, int) else np.array(n, float)
+        for n, axis in zip(each, form.axes, strict=True)
+    ]
+    c = np.random.default_rng(1).normal(size=[len(line) for line in lines])
+    fitted = form.fitted(c.ravel())
+    points = np.random.default_rng(2).random((200, 2)) * [1, 3] - [0, 1]
+    found = evaluate(traced(fitted, fitted, form.axes), points)[:, 0]
+    inside = [np.clip(points[:, k], lines[k][0], lines[k][-1]) for k in range(2)]
+    exact = RegularGridInterpolator(lines, c)(np.stack(inside, axis=1))
+    np.testing.assert_allclose(found, exact, atol=1e-14)
+    assert form.coefficient_names[:2] == ["c00", "c01"]
+
+
+def test_a_grid_is_fitted_proven_and_the_ramps_of_an_axis_are_computed_once():
+    form = piecewise_linear(TOY, (3, 4), name="p")
+    found = fit(form)
+    assert found.certificate.bound == np.inf
+    assert found.solver == "QR"
+    inner = piecewise_linear(TOY, ([0.1, 0.4, 0.9], [-0.7, 0.1, 1.2, 1.8]), name="p")
+    # Two and three ramps: a difference, a scale and two limits. In each of three rows three
+    # products and sums. To join the rows, two differences, products and sums.
+    c = np.random.default_rng(3).normal(size=12)
+    assert operations(inner, c) == 5 * 4 + 3 * 3 * 2 + 2 * 3
+
+
+def test_wrong_numbers_of_axes_and_endless_ones_are_refused():
+    with pytest.raises(ValueError, match="p: 3 knots: allowed are one number, or those of x, y"):
+        piecewise_linear(TOY, (3, 4, 5), name="p")
     endless = replace(LINE, axes=(Axis("x", 0.0, np.inf),))
     with pytest.raises(ValueError, match="allowed is a finite domain"):
         piecewise_linear(endless, 3, name="p")

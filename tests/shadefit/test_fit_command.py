@@ -66,6 +66,16 @@ def test_every_shape_has_a_name_on_the_command_line(run, data, form):
     assert table["errors"]["max"] < 0.25
 
 
+@pytest.mark.parametrize("form", ["exponentials:2,1", "piecewise:4,3", "piecewise:3"])
+def test_shapes_of_two_axes_have_a_name_on_the_command_line(run, tmp_path, form):
+    x, y = np.meshgrid(np.linspace(0, 2, 12), np.linspace(0, 1, 9))
+    rows = np.stack([x.ravel(), y.ravel(), ((1 + y) * np.exp(-x)).ravel()], axis=1)
+    np.savetxt(tmp_path / "grid.csv", rows, delimiter=",", header="x,y,f", comments="")
+    given = ["--x", "x,y", "--y", "f", "--form", form, "--hold-out", 0, "--json"]
+    (table,) = json.loads(run("fit", tmp_path / "grid.csv", *given))["tables"]
+    assert table["errors"]["max"] < 0.1
+
+
 def test_of_few_rows_none_is_held_out(run, tmp_path):
     path = tmp_path / "few.csv"
     path.write_text("x,y\n0,1\n1,3\n2,5\n3,7\n")
