@@ -7,7 +7,8 @@ docs/closed-form.md and docs/brdf.md.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from flint import arb, ctx
+import numpy as np
+from flint import acb, arb, arb_mat, ctx
 
 ctx.prec = 80
 
@@ -289,3 +290,103 @@ def ps_exact(alpha: Jet, half_f: Jet, half_u: Jet, cos_phi: Jet) -> tuple[Jet, l
     root2 = root * root
     above = root2 * ((root + c) * (root + m / sigma2)).sqrt()
     return 1 - above / (2 * root * root2 + (m + 2 * t) * root2 + m), arguments
+
+
+# R by rigorous integration, which finds by itself how far functions can be continued
+
+
+def _root_of(a: acb, e: acb, m: acb) -> acb:
+    """Enclose the continuation of the positive root of x³ + ax² − ex − m; NaN if that fails.
+
+    The sets a, e and m are connected and contain real numbers. Krawczyk's operator shows that the
+    cubic has exactly one root in a square, for all of them. At the real middle it is the positive
+    one.
+    """
+    by_a, by_e, by_m = (float(each.real.mid()) for each in (a, e, m))
+    x = 1.0
+    for _ in range(80):
+        slope = (3 * x + 2 * by_a) * x - by_e
+        step = (((x + by_a) * x - by_e) * x - by_m) / slope
+        x -= step
+        if abs(step) < 1e-15:
+            break
+    middle, rate = acb(x), acb(1 / slope)
+    newton = (((middle + a) * middle - e) * middle - m) * rate
+    size = float(newton.abs_upper()) * 2 + 1e-20
+    if not size < 1:
+        return acb("nan")
+    away = acb(arb(0, size), arb(0, size))
+    square = middle + away
+    found = middle - newton + (1 - ((3 * square + 2 * a) * square - e) * rate) * away
+    return found if square.contains_interior(found) else acb("nan")
+
+
+def _with_real_part(x: acb) -> acb:
+    return acb(x.real, x.imag.union(arb(0)))
+
+
+def _goes_up(alpha: arb, theta_f: arb, theta_u: acb, phi: acb, analytic: bool) -> acb:
+    """1 − P_s, or its continuation to complex angles of the light."""
+    b, kappa = theta_f.cos(), (1 - alpha) * (1 + alpha)
+    coefficients = []
+    for theta, azimuth in ((_with_real_part(theta_u), _with_real_part(phi)), (theta_u, phi)):
+        c = theta.cos()
+        a = theta.sin() * theta_f.sin() * azimuth.cos() + b * c
+        m = alpha**2 * c
+        coefficients.append((m + 2 * kappa * b * a, 1 - kappa * (a * a + b * b), m))
+    root, (total, _, m) = _root_of(*coefficients[0]), coefficients[1]
+    above = ((root + c) * (root + m / (1 - kappa * a * a))).sqrt(analytic=analytic) * root**2
+    return above / ((2 * root + total) * root**2 + m)
+
+
+def r_exact(alpha: float, theta_f: float, tolerance: float) -> arb:
+    """Enclose R by nested integration over θu and φ."""
+    roughness, fibre, pieces = arb(alpha), arb(theta_f), 24
+
+    def over_azimuth(theta_u: acb, analytic: bool) -> acb:
+        def value(phi: acb, analytic: bool = analytic) -> acb:
+            return _goes_up(roughness, fibre, theta_u, phi, analytic)
+
+        if float(theta_u.real.rad()) + float(theta_u.imag.abs_upper()) < 1e-12:
+            whole = acb.integral(value, 0, arb.pi(), abs_tol=tolerance, rel_tol=tolerance)
+        else:
+            # A set of values is enough, as a bound or to see that it has to be divided.
+            width, whole = arb.pi() / pieces, acb(0)
+            for k in range(pieces):
+                whole += value(acb((width * k).union(width * (k + 1)))) * width
+        return theta_u.cos() * theta_u.sin() * whole
+
+    half = acb.integral(over_azimuth, 0, arb.pi() / 2, abs_tol=tolerance, rel_tol=tolerance)
+    return 1 - 2 / arb.pi() * half.real
+
+
+def r_on_patches(places, powers, first, ends, box) -> Jet:
+    """Evaluate the polynomial of the patch around the centre of a box of α and θf."""
+    x = variables(box)
+    slab = next(k for k, end in enumerate(ends) if float(x[0].centre) <= end or end == ends[-1])
+    count = first[slab + 1] - first[slab]
+    k = min(int(float(x[1].centre) / (np.pi / 2) * count), count - 1)
+    place, matrix = places[first[slab] + k], powers[first[slab] + k]
+    local = [
+        (each - arb(float(middle))) / arb(float(half))
+        for each, middle, half in zip(x, place[::2], place[1::2], strict=True)
+    ]
+    assert all(each.value.abs_upper() <= 1 for each in local)
+
+    def powers_of(number: arb, count: int) -> tuple[list, list]:
+        values = [arb(1)]
+        for _ in range(count - 1):
+            values.append(values[-1] * number)
+        return values, [k * values[k - 1] if k else arb(0) for k in range(count)]
+
+    sums = []
+    sizes = matrix.nrows(), matrix.ncols()
+    for part in ("centre", "value"):
+        rows, columns = (
+            powers_of(getattr(each, part), n) for each, n in zip(local, sizes, strict=True)
+        )
+        row = [arb_mat(1, sizes[0], each) * matrix for each in rows]
+        column = [arb_mat(sizes[1], 1, each) for each in columns]
+        sums.append([(row[i] * column[j])[0, 0] for i, j in ((0, 0), (1, 0), (0, 1))])
+    slopes = [sums[1][k + 1] * local[k].slopes[k] for k in range(2)]
+    return Jet(sums[1][0], sums[0][0], slopes, x[0].radii)
