@@ -38,8 +38,8 @@ def certify(
 ) -> int:
     """Prove a bound of the largest error of tables on their whole domains.
 
-    This needs a C compiler and a closed form of the exact value; other quantities are 'sampled'.
-    The exit status is 1 if something that has a closed form is refuted or not proven.
+    This needs a C compiler, and a closed form of the exact value or bounds of it, as R has; other
+    quantities are 'sampled'. The exit status is 1 if a bound is refuted or not proven.
     """
     from coefficients.certify import certify as certify_entry
     from coefficients.certify import chosen, with_largest_error
