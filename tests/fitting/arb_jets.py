@@ -371,7 +371,8 @@ def r_on_patches(places, powers, first, ends, box) -> Jet:
         (each - arb(float(middle))) / arb(float(half))
         for each, middle, half in zip(x, place[::2], place[1::2], strict=True)
     ]
-    assert all(each.value.abs_upper() <= 1 for each in local)
+    for side, middle, half in zip(box, place[::2], place[1::2], strict=True):
+        assert all(abs(arb(float(end)) - float(middle)) <= float(half) for end in side)
 
     def powers_of(number: arb, count: int) -> tuple[list, list]:
         values = [arb(1)]
