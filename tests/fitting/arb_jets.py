@@ -360,19 +360,18 @@ def r_exact(alpha: float, theta_f: float, tolerance: float) -> arb:
     return 1 - 2 / arb.pi() * half.real
 
 
-def r_on_patches(places, powers, first, ends, box) -> Jet:
-    """Evaluate the polynomial of the patch around the centre of a box of α and θf."""
-    x = variables(box)
-    slab = next(k for k, end in enumerate(ends) if float(x[0].centre) <= end or end == ends[-1])
-    count = first[slab + 1] - first[slab]
-    k = min(int(float(x[1].centre) / (np.pi / 2) * count), count - 1)
-    place, matrix = places[first[slab] + k], powers[first[slab] + k]
+def r_on_patches(places: np.ndarray, powers: list[arb_mat], box: np.ndarray) -> Jet | None:
+    """Evaluate the polynomial of a patch that contains a box of α and θf; None if no patch does."""
+    x, ends = variables(box), box.T
+    on = np.abs(ends[None] - places[:, None, ::2]) <= places[:, None, 1::2]
+    found = np.flatnonzero(on.all(axis=(1, 2)))
+    if len(found) == 0:
+        return None
+    place, matrix = places[found[0]], powers[found[0]]
     local = [
         (each - arb(float(middle))) / arb(float(half))
         for each, middle, half in zip(x, place[::2], place[1::2], strict=True)
     ]
-    for side, middle, half in zip(box, place[::2], place[1::2], strict=True):
-        assert all(abs(arb(float(end)) - float(middle)) <= float(half) for end in side)
 
     def powers_of(number: arb, count: int) -> tuple[list, list]:
         values = [arb(1)]
