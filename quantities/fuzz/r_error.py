@@ -16,7 +16,7 @@ from quantities.fuzz.r_patches import Patches, patches
 
 # The polynomials differ from R by so much at most.
 TOLERANCE = 1e-8
-# The work grows as the least α to the power −3. It is a minute here, on one core.
+# The work grows as the least α to the power −3. Here it takes 80 seconds on one core.
 LEAST_ALPHA = 0.05
 
 _ENTRY = """

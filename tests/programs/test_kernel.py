@@ -26,9 +26,10 @@ UNIT = np.array([[0.0, 1.0]])
 # Rounding
 
 
-def test_a_processor_that_does_not_round_upward_is_noticed():
-    """The same code with the usual rounding mode: a search must not begin."""
-    code = "#include <fenv.h>\n#undef FE_UPWARD\n#define FE_UPWARD FE_TONEAREST\n"
+@pytest.mark.parametrize("mode", ["FE_TONEAREST", "FE_DOWNWARD", "FE_TOWARDZERO"])
+def test_a_processor_that_does_not_round_upward_is_noticed(mode):
+    """The same code with another rounding mode: a search must not begin."""
+    code = f"#include <fenv.h>\n#undef FE_UPWARD\n#define FE_UPWARD {mode}\n"
     entry = "static jet error_at(boxes *K, const jet *x) { return x[0]; }"
     kernel = compiled.compile_kernel([code, entry], 1)
     with pytest.raises(RuntimeError, match="does not round upward"):
@@ -46,6 +47,46 @@ def test_fused_operations_are_noticed(monkeypatch):
     except RuntimeError:
         return
     pytest.fail(f"fused operations were not noticed: {found}")
+
+
+def test_approximate_operations_are_noticed(monkeypatch):
+    """-ffast-math replaces quotients by products, and forgets NaN and the rounding mode."""
+    monkeypatch.setattr(compiled, "_FLAGS", (*compiled._FLAGS, "-ffast-math"))
+    kernel = kernel_of(lambda x: x / 3 - x * x)
+    with pytest.raises(RuntimeError, match="does not round upward"):
+        bound_largest(kernel, UNIT, 1.1)
+
+
+CONSTANTS = {
+    "LN2": lambda: mpmath.ln(2),
+    "iadd(number(LN2_FIRST), LN2_REST)": lambda: mpmath.ln(2),
+    "HALF_PI": lambda: mpmath.pi / 2,
+    "iadd(number(HALF_PI_FIRST), iadd(number(HALF_PI_SECOND), HALF_PI_REST))": lambda: (
+        mpmath.pi / 2
+    ),
+    "ireciprocal(number(3))": lambda: mpmath.mpf(1) / 3,
+    "over_odd(7)": lambda: mpmath.mpf(1) / 7,
+    "ireciprocal(HALF_PI)": lambda: 2 / mpmath.pi,
+}
+
+
+def test_constants_without_a_float_are_intervals():
+    cases = " ".join(f"case {k}: y = {text}; break;" for k, text in enumerate(CONSTANTS))
+    code = f"""
+static int place; void choose_place(int k) {{ place = k; }}
+static jet error_at(boxes *K UNUSED, const jet *x UNUSED) {{
+    iv y = number(0);
+    switch (place) {{ {cases} }}
+    return constant(y);
+}}"""
+    kernel = compiled.compile_kernel([code], 1)
+    with mpmath.workdps(50):
+        for k, exact in enumerate(CONSTANTS.values()):
+            kernel.library.choose_place(k)
+            low, high, *_ = kernel.enclose(UNIT)
+            assert mpmath.mpf(low) < exact() < mpmath.mpf(high)
+            # At most three neighbouring numbers
+            assert high <= np.nextafter(np.nextafter(low, 9), 9)
 
 
 def test_numbers_below_the_smallest_normal_one_are_kept():
@@ -72,6 +113,7 @@ ARITHMETIC = {
         lambda x, y: (x - 0.3) / 0.7,
         lambda x, y: (x - Fraction(0.3)) / Fraction(0.7),
     ),
+    "third": (lambda x, y: x / 3 + y, lambda x, y: x / 3 + y),
     "inverse": (lambda x, y: 0.3 / y, lambda x, y: Fraction(0.3) / y),
 }
 

@@ -2,6 +2,7 @@
 
 import itertools
 
+import jax
 import numpy as np
 import pytest
 
@@ -45,8 +46,9 @@ def arguments(count, seed):
 
 
 def test_the_integral_over_the_disk_is_the_closed_form():
+    closed_form = jax.jit(fraction_at)
     for alpha, theta_f, z, phi in arguments(20, 1):
-        exact = 1 - float(fraction_at(alpha, theta_f, np.arccos(np.sin(z) ** 2), phi))
+        exact = 1 - float(closed_form(alpha, theta_f, np.arccos(np.sin(z) ** 2), phi))
         assert goes_up(alpha, theta_f, z, phi) == pytest.approx(exact, abs=1e-9)
 
 
@@ -122,10 +124,10 @@ def test_the_rule_errs_by_its_defects():
 
 
 def test_the_error_of_a_panel_is_bounded():
-    """With a form of the integrand whose average over φ is known by many nodes."""
+    """Compared with three panels. The average over φ is a sum over the same lights in both."""
     (nodes, weights), _ = r_bounds.rule()
     alpha, theta_f = 0.35, 0.8
-    azimuths = (np.arange(40) + 0.5) * np.pi / 40
+    azimuths = (np.arange(20) + 0.5) * np.pi / 20
 
     def integrand(z):
         return (
@@ -168,7 +170,7 @@ def test_the_number_of_azimuths_is_enough():
         azimuths = (np.arange(count) + 0.5) * np.pi / count
         return np.mean([goes_up(alpha, theta_f, z, phi) for phi in azimuths])
 
-    exact = average(96)
+    exact = average(64)
     for tolerance in (0.1, 1e-3, 1e-6):
         count, left = r_bounds.azimuths(alpha, np.sin(theta_f), tolerance)
         assert count % 8 == 0 and left <= tolerance

@@ -62,9 +62,9 @@ def test_a_processor_that_does_not_round_upward_gives_no_bounds(monkeypatch):
     right = bounds_at(0.5, 1.0, 1e-3)
     original = compiled.compile_kernel
 
-    def to_nearest(parts, *options, **more):
+    def to_nearest(parts, sides, **_):
         code = "#include <fenv.h>\n#undef FE_UPWARD\n#define FE_UPWARD FE_TONEAREST\n"
-        return original([code, *parts], *options, **more)
+        return original([code, *parts], sides)
 
     monkeypatch.setattr(r_patches, "compile_kernel", to_nearest)
     monkeypatch.setattr(r_patches, "_averages", r_patches._averages.__wrapped__)
