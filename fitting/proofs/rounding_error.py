@@ -25,7 +25,7 @@ MAX_BOXES = 5_000_000
 # The search begins with the largest of so many values, and those of the corners.
 _SEEDS = 2000
 # Longer code takes minutes to compile.
-_MOST_STEPS = 500
+_MOST_STEPS = 300
 
 
 @dataclass(frozen=True)
