@@ -8,7 +8,7 @@ import numpy as np
 
 from fitting.proofs.largest_error import printed
 from integrals.reference import Axis, box_of
-from programs.bounding.compiled import compile_kernel, compiler_missing
+from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
 from programs.bounding.largest import LargestValue, Report, bound_largest
 from programs.bounding.rounding import joined, rounding_parts
 from programs.bounding.rounding_model import RoundingModel
@@ -25,7 +25,7 @@ MAX_BOXES = 5_000_000
 # The search begins with the largest of so many values, and those of the corners.
 _SEEDS = 2000
 # Longer code takes minutes to compile.
-_MOST_STEPS = 500
+_MOST_STEPS = 300
 
 
 @dataclass(frozen=True)
@@ -63,32 +63,44 @@ def bound_rounding(
     times a second. Returns the bound as `upper`, which is None if there is no proof. Raises
     ValueError without a C compiler, for an infinite domain, and for an operation without a model.
     """
-    program = joined([trace(each) for each in functions])
-    box = _rounded_box(arguments)
-    if not np.isfinite(box).all():
-        raise ValueError(f"{program.name}: a domain is infinite; allowed are finite ones")
-    reason = compiler_missing()
-    if reason is not None:
-        raise ValueError(f"the proof needs a C compiler: {reason}")
+    box = rounded_box(arguments)
+    kernel = rounding_kernel(functions, arguments, model)
     if ratio is None:
         ratio = RATIO if len(box) <= 2 else RATIO_OF_MANY
-    count, names = len(arguments.rounded), tuple(f"x{k}" for k in range(len(box)))
-    given = ", ".join(f"x[{k}]" for k in range(len(box)))
-    if count != len(program.inputs):
-        raise ValueError(f"{program.name} has {len(program.inputs)} arguments; given: {count}")
-    parts = (
-        printed("arguments", names, arguments.call, count),
-        *rounding_parts(program, model, f"arguments(K, {given}, v);", arguments.rounded),
-    )
-    try:
-        kernel = compile_kernel(parts, len(box))
-    except ToolchainError as error:
-        raise ValueError(f"{error.summary}: allowed is gcc or a compiler like it") from error
     rng = np.random.default_rng(0)
     seeds = np.concatenate([list(product(*box)), rng.uniform(*box.T, (_SEEDS, len(box)))])
     return bound_largest(
         kernel, box, ratio, seeds=seeds, threads=threads, max_boxes=max_boxes, progress=progress
     )
+
+
+def rounding_kernel(
+    functions: Sequence[Function], arguments: TracedArguments, model: RoundingModel
+) -> Kernel:
+    """Compile the bound of the rounding error as a function of the variables of `arguments`.
+
+    On a box it bounds the error for all arguments in the box. Raises ValueError as `bound_rounding`
+    does.
+    """
+    program = joined([trace(each) for each in functions])
+    sides = len(arguments.axes)
+    if not np.isfinite(box_of(arguments.axes)).all():
+        raise ValueError(f"{program.name}: a domain is infinite; allowed are finite ones")
+    count, names = len(arguments.rounded), tuple(f"x{k}" for k in range(sides))
+    if count != len(program.inputs):
+        raise ValueError(f"{program.name} has {len(program.inputs)} arguments; given: {count}")
+    reason = compiler_missing()
+    if reason is not None:
+        raise ValueError(f"the proof needs a C compiler: {reason}")
+    given = ", ".join(f"x[{k}]" for k in range(sides))
+    parts = (
+        printed("arguments", names, arguments.call, count),
+        *rounding_parts(program, model, f"arguments(K, {given}, v);", arguments.rounded),
+    )
+    try:
+        return compile_kernel(parts, sides)
+    except ToolchainError as error:
+        raise ValueError(f"{error.summary}: allowed is gcc or a compiler like it") from error
 
 
 def can_be_bounded(functions: Sequence[Function], model: RoundingModel) -> bool:
@@ -103,7 +115,7 @@ def can_be_bounded(functions: Sequence[Function], model: RoundingModel) -> bool:
     return known and not differ and len(steps) <= _MOST_STEPS
 
 
-def _rounded_box(arguments: TracedArguments) -> np.ndarray:
+def rounded_box(arguments: TracedArguments) -> np.ndarray:
     """Return the ends (sides, 2) of the domain, and of the domain with its ends in float32."""
     ends = box_of(arguments.axes)
     rounded = ends.astype(np.float32).astype(float)

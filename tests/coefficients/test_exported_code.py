@@ -328,6 +328,7 @@ def test_the_header_tells_the_measured_error_in_every_language(few_points, key, 
     assert ("this code run in" in text) == ran
     assert ("emulated" in text) != ran
     assert ("Half precision: good enough" in text) == (precision == "half")
+    assert ("Rounding in float: " in text) == (precision == "float")
     assert source.startswith(f"{language(key).comment} SPDX-License-Identifier: Apache-2.0\n")
     assert source.isascii()
 

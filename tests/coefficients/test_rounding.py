@@ -1,5 +1,7 @@
 """Rounding of exported code: the proven bounds, and the compiled code itself."""
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -8,8 +10,11 @@ from coefficients.exported_code import trial_of
 from coefficients.proof_text import rounding_text
 from coefficients.rounding import arguments_of, certify_rounding, with_rounding
 from coefficients.table import parse, serialise
-from programs import write_source
+from fitting.proofs.rounding_error import rounded_box, rounding_kernel
+from programs import evaluate, trace, write_source
 from programs.bounding.compiled import compiler_missing
+from programs.bounding.rounding import joined
+from programs.bounding.rounding_model import IEEE
 from programs.toolchains.difference import difference
 from programs.toolchains.verification import run_code
 
@@ -63,9 +68,30 @@ def test_arguments_of_proofs_are_those_of_the_code():
     for name in ("best/ps-11", "exact/ps", "exact/g", "best/r-25"):
         entry = resolve(name)
         given = arguments_of(entry)
-        points = np.stack([axis.place(0.3) for axis in entry.axes])[None]
-        own = [float(axis.place(0.3)) for axis in entry.axes]
+        points = np.stack([axis.place(np.array(0.3)) for axis in entry.axes])[None]
+        own = [float(axis.place(np.array(0.3))) for axis in entry.axes]
         if name.endswith(("ps", "ps-11")):
             points[0, 3], own[3] = 2.0, np.cos(2.0)
         expected = np.concatenate(entry.arguments_at(points), axis=1)[0]
         np.testing.assert_allclose([float(x) for x in given.call(*own)], expected, atol=1e-15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["best/ps-11", "best/ps-61-wide", "exact/ps", "best/g-17"])
+def test_the_bound_holds_at_each_point_even_where_it_is_not_proven_on_boxes(name):
+    """The search cannot divide the whole domain of forms with Newton steps, but points it can."""
+    entry = resolve(name)
+    functions, given = entry.functions("float"), arguments_of(entry)
+    kernel = rounding_kernel(functions, given, IEEE)
+    program, rng = joined([trace(each) for each in functions]), np.random.default_rng(4)
+    low, high = rounded_box(given).T
+    points = low + (high - low) * rng.random((3000, len(low))) ** 2
+    inputs = np.array(jax.vmap(lambda x: jnp.stack(given.call(*x)))(jnp.asarray(points)))
+    inputs = inputs.astype(np.float32).astype(float)
+    if not any(given.rounded):
+        points = np.clip(inputs[:, [1, 0]], low, high)
+    single = evaluate(program, inputs, np.float32).astype(float)
+    moved = np.abs(single - evaluate(program, inputs))[:, 0]
+    bounds = np.array([kernel.enclose(np.stack([x, x], axis=1))[1] for x in points])
+    assert np.all(moved <= bounds)
+    assert bounds.max() <= 40 * moved.max()
