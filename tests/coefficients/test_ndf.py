@@ -66,7 +66,7 @@ def test_no_table_is_refused(tmp_path):
     with pytest.raises(ValueError, match="no such file"):
         read_ndf(tmp_path / "none.json")
     (tmp_path / "text.json").write_text("[" * 100_000)
-    with pytest.raises(ValueError, match="text.json"):
+    with pytest.raises(ValueError, match=r"text\.json"):
         read_ndf(tmp_path / "text.json")
 
 
