@@ -12,7 +12,7 @@ GGX_BIAS = Problem(
     forms=(BIQUADRATIC_BIAS,),
     families={
         "masked-ggx-bias": Family(
-            masked_bias, {"numerator": "exponents or none", "denominator": "exponents or none"}
+            masked_bias, {"numerator": "exponents", "denominator": "exponents"}
         ),
     },
     candidates=lambda _: candidates(masked_bias),

@@ -12,7 +12,7 @@ GGX_SCALE = Problem(
     forms=(BIQUADRATIC_SCALE,),
     families={
         "masked-ggx-scale": Family(
-            masked_scale, {"numerator": "exponents or none", "denominator": "exponents or none"}
+            masked_scale, {"numerator": "exponents", "denominator": "exponents"}
         ),
     },
     candidates=lambda _: candidates(masked_scale),

@@ -1,7 +1,7 @@
 """Forms of A and B that agree with a form of E: B = E t⁵ and A = E (1 − t⁵), with 0 ≤ t ≤ 1.
 
 t is one minus an effective cosine, as in Schlick's (1 − v·h)⁵. It is V/T with sums of monomials
-V and T of μ and σ, which have the constant 1. If V ≥ 0 and T ≥ V, then 0 ≤ A ≤ E and 0 ≤ B ≤ E.
+V and T of μ and σ. If V ≥ 0 and T ≥ V, then 0 ≤ A ≤ E and 0 ≤ B ≤ E.
 E is that of a best table, with its coefficients as constants, so that this holds beside that table.
 """
 
@@ -52,10 +52,11 @@ def _parts(c: Any, at: Lobe, numerator: Exponents, denominator: Exponents) -> tu
     """Return V and T, with the coefficients of V first."""
     split, variables = len(numerator), (at.mu, at.sigma)
     above = dict(zip(numerator, (c[k] for k in range(split)), strict=True))
-    below = dict(zip(denominator, (c[split + k] for k in range(len(denominator))), strict=True))
+    free = (c[split + k] for k in range(len(denominator) - 1))
+    below = dict(zip(denominator, (ONE, *free), strict=True))
     return (
-        nested_horner({(0, 0): ONE, **above}, variables),
-        nested_horner({(0, 0): ONE, **below}, variables),
+        nested_horner(above, variables),
+        nested_horner(below, variables),
     )
 
 
@@ -74,12 +75,13 @@ def _start(numerator: Exponents, denominator: Exponents) -> np.ndarray:
     rough = sigma - mu
     t = (1 - mu) * (1 - _GRAZING * rough / (rough + _HALF))
     columns = [mu**i * sigma**j for i, j in numerator]
-    columns += [-t * mu**i * sigma**j for i, j in denominator]
+    columns += [-t * mu**i * sigma**j for i, j in denominator[1:]]
+    one = mu ** denominator[0][0] * sigma ** denominator[0][1]
     weight = t**4 + 0.01
     matrix = np.stack(columns, axis=1) * weight[:, None]
     # The ridge keeps coefficients small: the simple function is not worth large ones.
     ridge = 1e-3 * np.eye(len(columns))
-    values = np.concatenate([(t - 1) * weight, np.zeros(len(columns))])
+    values = np.concatenate([t * one * weight, np.zeros(len(columns))])
     return np.linalg.lstsq(np.concatenate([matrix, ridge]), values, rcond=None)[0]
 
 
@@ -103,14 +105,14 @@ def _masked(
     return Form(
         name=f"masked-{owner.name}",
         equation=(
-            f"{symbol} = {text}, t = V/T, 1 + {len(numerator)} and 1 + {len(denominator)} "
+            f"{symbol} = {text}, t = V/T, {len(numerator)} and {len(denominator)} "
             "monomials μ^i σ^j, E = 2N/(μs + σ)"
         ),
         reference=owner,
         axes=AXES,
         coefficient_names=[
             *monomial_names("V", numerator, "μσ"),
-            *monomial_names("T", denominator, "μσ"),
+            *monomial_names("T", denominator[1:], "μσ"),
         ],
         stages=(Stage(value),),
         starts=(_start(numerator, denominator),),
@@ -125,7 +127,10 @@ def _masked(
 
 @functools.cache
 def masked_bias(*, numerator: Exponents, denominator: Exponents) -> Form:
-    """Return the form B = E t⁵. The exponents (i, j) are those of the monomials μⁱσʲ of V and T."""
+    """Return the form B = E t⁵. The exponents (i, j) are those of μⁱσʲ in V and in T.
+
+    The first monomial of T has the coefficient 1.
+    """
     return _masked(GGX_BIAS, "B", "E t⁵", lambda e, t: e * t, numerator, denominator)
 
 
@@ -135,15 +140,21 @@ def masked_scale(*, numerator: Exponents, denominator: Exponents) -> Form:
     return _masked(GGX_SCALE, "A", "E (1 − t⁵)", lambda e, t: e * (1 - t), numerator, denominator)
 
 
-def _total(degree: int) -> Exponents:
-    return tuple((i, n - i) for n in range(1, degree + 1) for i in range(n + 1))
-
-
-# The monomials of V and T that a search tries.
+# The monomials of V and T that a search tries, found by leaving out single ones of all up to the
+# third degree, with the least largest error at each size.
 CHOSEN_SPLITS: tuple[tuple[Exponents, Exponents], ...] = (
-    (_total(2), _total(2)),
-    (_total(3), _total(2)),
-    (_total(3), _total(3)),
+    (
+        ((0, 2), (1, 1), (0, 3), (1, 2), (2, 1)),
+        ((0, 2), (1, 1), (0, 3), (1, 2)),
+    ),
+    (
+        ((0, 0), (0, 2), (1, 1), (0, 3), (1, 2), (2, 1)),
+        ((0, 2), (0, 0), (1, 1), (0, 3), (1, 2)),
+    ),
+    (
+        ((0, 1), (0, 2), (1, 1), (2, 0), (0, 3), (1, 2), (2, 1), (3, 0)),
+        ((0, 1), (0, 2), (1, 1), (0, 3), (1, 2), (2, 1), (3, 0)),
+    ),
 )
 
 
