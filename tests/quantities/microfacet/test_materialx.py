@@ -51,7 +51,9 @@ def test_the_published_tables_are_the_code_of_materialx():
     a, b = analytic(*at.T)
     for name, expected in (("ggx-scale", a), ("ggx-bias", b), ("ggx-directional-albedo", a + b)):
         entry = resolve(f"published/{name}")
-        values = np.clip(form_values(entry.require_fitted(), at), 0, None)
+        # The quotients are clamped where they are exported, and in E.
+        values = form_values(entry.require_fitted(), at)
+        values = values if name == "ggx-directional-albedo" else np.clip(values, 0, 1)
         np.testing.assert_allclose(values, expected, atol=1e-14)
         assert "MaterialX" in entry.require_table().publication.source
 
@@ -79,4 +81,4 @@ def test_its_errors_on_a_grid_of_perceptual_roughness(part, rms, most):
 
 
 def test_it_creates_energy():
-    assert 1.03 < np.add(*analytic(*points(CELLS).T)).max() < 1.04
+    assert 1.01 < np.add(*analytic(*points(CELLS).T)).max() < 1.02
