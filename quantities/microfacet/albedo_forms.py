@@ -25,7 +25,9 @@ from shading.types import Scalar
 # E has a dip at μ ≈ α. No form with few coefficients has it for every α, however small.
 LEAST_ALPHA = 0.01
 AXES = restricted(GGX_DIRECTIONAL_ALBEDO.axes, alpha=(LEAST_ALPHA, 1.0))
-NOTATION = "κ = 1 − α², σ = √(α² + κμ²), p = μ/σ, a = α/σ, 2N/σ = (κp + d)²/(2d), d = √(κ²p² + 4a²)"
+NOTATION = (
+    "κ = 1 − α², σ = √(α² + κ μ²), p = μ/σ, a = α/σ, 2N/σ = (κ p + d)²/(2 d), d = √(κ² p² + 4 a²)"
+)
 # The monomials of R are at least of this degree, those of Q too.
 _DEGREE_OF_R, _DEGREE_OF_Q = 1, 3
 # At small α and μ, s is 1.2 (docs/microfacet.md).
@@ -83,7 +85,7 @@ def _scaled(exponents: Exponents, coefficients: list, at: Lobe, degree: int) -> 
 
     None of the factors is small then, even in half precision, unless the monomial is.
     """
-    terms = {}
+    terms: dict[tuple[int, ...], Any] = {}
     for (i, j), c in zip(exponents, coefficients, strict=True):
         p = min(i, degree)
         a = min(j, degree - p)

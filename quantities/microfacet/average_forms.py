@@ -6,6 +6,7 @@ relative error of 1 − E_avg, which energy compensation divides by, tends to 0 
 
 import functools
 from collections.abc import Iterator
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -55,7 +56,10 @@ def average_form(*, structure: str, above: int, below: int) -> Form:
         a = jnp.asarray(alpha)
         r = nested_horner({(k,): c[k] for k in range(above)}, (a,))
         if below:
-            terms = {(0,): ONE, **{(k + 1,): c[above + k] for k in range(below)}}
+            terms: dict[tuple[int, ...], Any] = {
+                (0,): ONE,
+                **{(k + 1,): c[above + k] for k in range(below)},
+            }
             r = r / nested_horner(terms, (a,))
         if structure == "log":
             r = C0 - jnp.log(a) + a * r

@@ -51,9 +51,11 @@ def albedo(at: Lobe) -> Array:
 def _parts(c: Any, at: Lobe, numerator: Exponents, denominator: Exponents) -> tuple[Any, Any]:
     """Return V and T, with the coefficients of V first."""
     split, variables = len(numerator), (at.mu, at.sigma)
-    above = dict(zip(numerator, (c[k] for k in range(split)), strict=True))
+    above: dict[tuple[int, ...], Any] = dict(
+        zip(numerator, (c[k] for k in range(split)), strict=True)
+    )
     free = (c[split + k] for k in range(len(denominator) - 1))
-    below = dict(zip(denominator, (ONE, *free), strict=True))
+    below: dict[tuple[int, ...], Any] = dict(zip(denominator, (ONE, *free), strict=True))
     return (
         nested_horner(above, variables),
         nested_horner(below, variables),
