@@ -25,6 +25,10 @@ from integrals.fuzz.ps import PS as PS
 from integrals.fuzz.q import Q as Q
 from integrals.fuzz.r import R as R
 from integrals.fuzz.velvet import VELVET as VELVET
+from integrals.microfacet.references import GGX_AVERAGE_ALBEDO as GGX_AVERAGE_ALBEDO
+from integrals.microfacet.references import GGX_BIAS as GGX_BIAS
+from integrals.microfacet.references import GGX_DIRECTIONAL_ALBEDO as GGX_DIRECTIONAL_ALBEDO
+from integrals.microfacet.references import GGX_SCALE as GGX_SCALE
 from integrals.reference import Axis as Axis
 from integrals.reference import Estimate as Estimate
 from integrals.reference import Reference as Reference
@@ -36,4 +40,6 @@ from integrals.sources import hemisphere as hemisphere
 from integrals.sources import quadrature as quadrature
 from integrals.sources import sphere as sphere
 
-REFERENCES = {each.name: each for each in (PS, G, Q, R, VELVET)}
+_FUZZ = (PS, G, Q, R, VELVET)
+_MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
+REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS)}

@@ -7,12 +7,20 @@ name of the entry point is that of the quantity. The package is imported when th
 from importlib.metadata import entry_points
 
 from quantities.fuzz import PS, VELVET, G, Q, R
-from quantities.microfacet import SAMPLERS
+from quantities.microfacet import (
+    GGX_AVERAGE_ALBEDO,
+    GGX_BIAS,
+    GGX_DIRECTIONAL_ALBEDO,
+    GGX_SCALE,
+    SAMPLERS,
+)
 from quantities.problem import Problem
 
 GROUP = "shadefit.problems"
 
-_PROBLEMS: dict[str, Problem] = {each.name: each for each in (PS, G, Q, R, VELVET)}
+_FUZZ = (PS, G, Q, R, VELVET)
+_MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
+_PROBLEMS: dict[str, Problem] = {each.name: each for each in (*_FUZZ, *_MICROFACETS)}
 
 
 def problems() -> dict[str, Problem]:

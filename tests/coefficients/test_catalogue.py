@@ -220,7 +220,7 @@ def test_other_names_are_refused_in_one_line(name, tmp_path, monkeypatch):
 
 
 def test_a_refusal_says_what_is_allowed():
-    with pytest.raises(ValueError, match="'s': allowed are ps, g, q, r, velvet, published/ps"):
+    with pytest.raises(ValueError, match="'s': allowed are ps, g, q, r, velvet, ggx-dir"):
         resolve("s")
     with pytest.raises(ValueError, match="ps is not published: allowed is ps without @printed"):
         resolve("ps@printed")

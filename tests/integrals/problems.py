@@ -86,6 +86,17 @@ def _table() -> list[KnownValue]:
         KnownValue("velvet", (0.0,), 1.0, "isotropic lobe"),
         KnownValue("velvet", (-np.sqrt(0.5),), np.pi / (4 * np.sqrt(2) + 2 * np.pi), "x = s"),
     ]
+    # GGX at α = 1: the half vectors of all lights are equally likely.
+    values += [
+        KnownValue("ggx-directional-albedo", (mu, 1.0), 1 - mu * np.log1p(1 / mu), "α = 1")
+        for mu in (0.1, 0.5, 1.0)
+    ]
+    values += [
+        KnownValue("ggx-directional-albedo", (0.0, 0.3), 1.0, "grazing light is not masked"),
+        KnownValue("ggx-bias", (0.0, 1.0), 1 / 21, "α = 1, μ = 0"),
+        KnownValue("ggx-scale", (0.0, 1.0), 20 / 21, "α = 1, μ = 0"),
+        KnownValue("ggx-average-albedo", (1.0,), 4 / 3 * (1 - np.log(2)), "average of α = 1"),
+    ]
     return values
 
 

@@ -14,6 +14,7 @@ R_SHAPE = {
     "denominator": [[1, 0], [1, 1]],
     "least_alpha": 0.15,
 }
+MASKED = {"numerator": [[0, 1], [1, 0]], "denominator": [[0, 3], [3, 0]]}
 SHAPES = {
     "pole-q": {"structure": "free", "terms": 1, "poles": 1},
     "decay-g": {"decay": "power", "rate": "constant", "factor": "linear"},
@@ -22,6 +23,10 @@ SHAPES = {
     "one-root-ps": {"skew": 1, "degree": 1, "least_alpha": 0.15},
     "two-root-ps": {"terms": 3, "degree": 1, "least_alpha": 0.15},
     "cubic-ps": {"steps": 0, "degree": 1, "least_alpha": 0.15},
+    "masked-ggx-directional-albedo": MASKED,
+    "masked-ggx-scale": MASKED,
+    "masked-ggx-bias": MASKED,
+    "quotient-ggx-average-albedo": {"structure": "log", "above": 1, "below": 0},
 }
 FAMILIES = {name: owner for owner in problems().values() for name in owner.families}
 
@@ -31,7 +36,9 @@ def form_of(family: str, shape: dict):
     return owner.find_form(family, shape)
 
 
-@pytest.mark.parametrize("quantity", ["q", "g", "ps"])
+@pytest.mark.parametrize(
+    "quantity", ["q", "g", "ps", "ggx-directional-albedo", "ggx-bias", "ggx-scale"]
+)
 def test_every_candidate_is_made_again_from_its_family_and_shape(quantity):
     owner = problem(quantity)
     for form in owner.candidates({"alpha": 0.15}):
@@ -112,4 +119,4 @@ def test_every_allowed_shape_gives_a_form(family):
 def test_families_are_named_after_their_quantity():
     assert set(FAMILIES) == set(SHAPES)
     for name, owner in FAMILIES.items():
-        assert name.rpartition("-")[2] == owner.name
+        assert name.endswith(f"-{owner.name}")

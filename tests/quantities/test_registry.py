@@ -51,8 +51,11 @@ def one_line(caught) -> str:
     return str(caught.value)
 
 
-def test_the_quantities_of_the_fuzz_brdf_are_known_in_their_order():
-    assert list(problems()) == list(REFERENCES) == ["ps", "g", "q", "r", "velvet"]
+GGX = ["ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo"]
+
+
+def test_the_quantities_are_known_in_their_order():
+    assert list(problems()) == list(REFERENCES) == ["ps", "g", "q", "r", "velvet", *GGX]
     for name, each in problems().items():
         assert problem(name) is each
         assert each.name == name
@@ -65,7 +68,8 @@ def test_the_quantities_of_the_fuzz_brdf_are_known_in_their_order():
 def test_an_unknown_quantity_is_refused_in_one_line(name):
     with pytest.raises(ValueError) as caught:
         problem(name)
-    assert one_line(caught) == (f"no quantity is called {name!r}: allowed are ps, g, q, r, velvet")
+    every = ", ".join(["ps, g, q, r, velvet", *GGX])
+    assert one_line(caught) == f"no quantity is called {name!r}: allowed are {every}"
 
 
 def test_a_quantity_comes_in_by_its_name_and_goes_again(registered):
