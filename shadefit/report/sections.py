@@ -82,10 +82,19 @@ def _entry(mark: Mark, owner: Problem, own: Mapping[str, Entry]) -> Entry:
     return own.get(mark.name) or resolve(mark.name)
 
 
+def _form(entry: Entry) -> str:
+    """Return where a form is printed, or else its name."""
+    return (
+        "closed form"
+        if entry.fitted is None
+        else entry.fitted.form.printed or entry.fitted.form.name
+    )
+
+
 def _row(mark: Mark, base: Mark | None, entry: Entry) -> str:
     table = entry.table
     cells = [
-        table.form if table else "closed form",
+        _form(entry),
         str(table.size) if table else "0",
         _operations(entry),
         f"{mark.rms:.3e}",
