@@ -170,7 +170,7 @@ def _table(source: str, given: dict) -> "NdfTable":
     from quantities.piecewise.targets import measured_target, target_of
 
     command = ["shadefit", "ndf", source]
-    if path.suffix or path.exists():
+    if path.exists() or path.suffix in (".csv", ".npy", ".npz"):
         target = measured_target(path, given["theta"], given["D"], degrees=given["degrees"])
         command += ["--theta", given["theta"], "--value", given["D"]]
         command += ["--degrees"] if given["degrees"] else []

@@ -1,4 +1,4 @@
-"""All pictures by name: those of the fuzz BRDF, one of each other quantity, and the frontier."""
+"""All pictures by name: of the fuzz BRDF, the NDF, each other quantity, and the frontier."""
 
 from functools import partial
 
@@ -7,6 +7,7 @@ from shadefit.figures.curves import draw_curves
 from shadefit.figures.frontier import draw_frontier
 from shadefit.figures.fuzz_pictures import DRAWN, fuzz_pictures
 from shadefit.figures.maps import draw_errors
+from shadefit.figures.ndf import ndf_pictures
 from shadefit.figures.picture import Picture
 from shadefit.figures.result import draw_data
 
@@ -34,7 +35,7 @@ def pictures() -> dict[str, Picture]:
         for owner in problems().values()
         if owner not in DRAWN and len(owner.axes) in _DRAW
     }
-    return {**fuzz_pictures(), **others, "frontier": _FRONTIER}
+    return {**fuzz_pictures(), **ndf_pictures(), **others, "frontier": _FRONTIER}
 
 
 def errors_picture(owner: Problem) -> Picture:

@@ -7,7 +7,7 @@ import pytest
 
 from coefficients.ndf_code import check_ndf, ndf_source, ndf_trials, profile_of
 from coefficients.ndf_table import SCHEMA, NdfErrors, NdfTable, read_ndf, serialise_ndf
-from programs import toolchain
+from programs import precision_of, toolchain
 from quantities.piecewise.code import ndf_functions
 from quantities.piecewise.knots import equidistributed_knots
 from quantities.piecewise.targets import target_of
@@ -66,13 +66,13 @@ def test_no_table_is_refused(tmp_path):
     with pytest.raises(ValueError, match="no such file"):
         read_ndf(tmp_path / "none.json")
     (tmp_path / "text.json").write_text("[" * 100_000)
-    with pytest.raises(ValueError, match="text.json"):
+    with pytest.raises(ValueError, match=r"text\.json"):
         read_ndf(tmp_path / "text.json")
 
 
 def test_code_has_the_values_of_the_library(table):
     """In float64 only the arctangent's polynomial and the rounding of float32 inputs differ."""
-    limits = {"NdfD": 3e-5, "NdfHidden": 2e-7, "NdfVisibility": 3e-6, "NdfSquaredSine": 1e-7}
+    limits = {"NdfD": 3e-5, "NdfHidden": 6e-7, "NdfVisibility": 3e-6, "NdfSquaredSine": 1e-7}
     for trial in ndf_trials(profile_of(table), "float"):
         (function,) = trial.calls.functions
         found = trial.emulated(np.float64)
@@ -91,7 +91,7 @@ def test_a_profile_with_gaps_has_code_too():
 
 @pytest.mark.parametrize("key", ["c", "javascript"])
 def test_code_is_run(table, key):
-    if toolchain(key).missing(None) is not None:
+    if toolchain(key).missing(precision_of(key, None)) is not None:
         pytest.skip(f"{key} is not installed")
     assert [each.status for each in check_ndf(table, key)] == ["passed"] * 4
 
