@@ -16,7 +16,10 @@ ROOT = Path(__file__).parents[2]
 NAVIGATION = {
     "Guides": ("docs/own-integral", "docs/gallery", "docs/site/explorer"),
     "Reference": ("docs/site/commands", "docs/json", "docs/table-format", "docs/site/api"),
-    "Mathematics": ("docs/closed-form", "docs/range", "docs/certify", "docs/brdf"),
+    "Mathematics": (
+        *("docs/closed-form", "docs/range", "docs/certify", "docs/brdf"),
+        "docs/piecewise-ndf",
+    ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }
 START = """<!doctype html>

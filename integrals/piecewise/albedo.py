@@ -2,9 +2,9 @@
 
 With the height-correlated G2, f = D(h)/(4 (μν + H(o)ν + H(i)μ)) for unit reflectance, where μ = o·n
 and ν = i·n. The half vector has (h·n)² = (μ + ν)²/t with t = a + b cos φ, a = 2 + 2μν and
-b = 2 sin θo sin θi. Where D = a_k + b_k (h·n)², its integral over azimuths is elementary, because
-∫ dφ/t = atan(√((a − b)/(a + b)) tan(φ/2))/(μ + ν). Only the integral over θi is left. The arcs of the
-azimuth begin or end at θi = |θo ± 2θ_k| and 2θ_k − θo: between these angles the integrand is smooth.
+b = 2 sin θo sin θi. Where D = a_k + b_k (h·n)², its integral over azimuths is elementary, since
+∫ dφ/t = atan(√((a − b)/(a + b)) tan(φ/2))/(μ + ν). Only the integral over θi is left. The arcs of
+the azimuth begin or end at θi = |θo ± 2θ_k| and 2θ_k − θo: between them the integrand is smooth.
 """
 
 import jax

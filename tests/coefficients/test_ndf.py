@@ -79,6 +79,7 @@ def test_code_has_the_values_of_the_library(table):
         assert np.abs(found - trial.integral).max() < limits[function.name], function.name
 
 
+@pytest.mark.slow
 def test_a_profile_with_gaps_has_code_too():
     ndf = normalised(
         profile(
@@ -89,6 +90,7 @@ def test_a_profile_with_gaps_has_code_too():
         assert np.abs(trial.emulated(np.float32) - trial.integral).max() < 2e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["c", "javascript"])
 def test_code_is_run(table, key):
     if toolchain(key).missing(precision_of(key, None)) is not None:
@@ -96,6 +98,7 @@ def test_code_is_run(table, key):
     assert [each.status for each in check_ndf(table, key)] == ["passed"] * 4
 
 
+@pytest.mark.slow
 def test_code_is_the_same_bytes_with_its_knots_in_an_array(table):
     source = ndf_source(table, "hlsl", name="Cloth")
     assert source == ndf_source(table, "hlsl", name="Cloth")

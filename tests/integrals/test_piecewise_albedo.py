@@ -28,6 +28,7 @@ def test_the_albedo_converges(theta_o):
     assert 0 < fine < 1
 
 
+@pytest.mark.slow
 def test_the_albedo_is_the_mean_of_reflections():
     """f ν/pdf = ν(μ + H(o))/(μν + H(o)ν + H(i)μ) for the sampler of visible normals."""
     theta_o, points = 0.9, np.random.default_rng(5).random((20_000, 2))
@@ -41,6 +42,7 @@ def test_the_albedo_is_the_mean_of_reflections():
     assert abs(weights.mean() - float(_albedo(NDF, theta_o))) < 5 * error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", GGX)
 def test_the_albedo_of_a_fitted_ggx_approaches_that_of_ggx(case):
     width, mu = case

@@ -20,7 +20,7 @@ def uniform(target, segments):
     return normalised(profile(knots, target.of(knots), "angle"))
 
 
-@pytest.mark.parametrize("name", ["ggx:0.05", "beckmann:0.1"])
+@pytest.mark.parametrize("name", [pytest.param("ggx:0.05", marks=pytest.mark.slow), "beckmann:0.1"])
 def test_the_total_variation_is_ten_times_smaller_than_with_uniform_knots(name):
     target = target_of(name)
     fit = fit_ndf(target, 32)
@@ -43,6 +43,7 @@ def test_masking_of_ggx_is_that_of_its_formula():
     np.testing.assert_allclose(moment(fit.profile), 0.1 / 4, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_fit_is_monotone_if_asked():
     target = target_of("student-t:0.2,3")
     fit = fit_ndf(target, 12, monotone=True)
@@ -76,6 +77,7 @@ def test_knots_increase_and_are_dense_at_the_peak():
         equidistributed_knots(target_of("ggx:0.1").of, 1)
 
 
+@pytest.mark.slow
 def test_measured_samples(tmp_path):
     theta = np.linspace(0, 80, 90)
     truth = target_of("ggx:0.3")

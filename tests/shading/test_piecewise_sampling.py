@@ -44,7 +44,15 @@ def upper(pdf):
     return lambda at: np.where(at[:, 2] > 0, pdf(np.where(at[:, 2:] > 0, at, [0.0, 0.0, 1.0])), 0)
 
 
-@pytest.mark.parametrize("ndf", [PROFILE, BLEND, random_blend(6)], ids=["one", "blend", "angle"])
+@pytest.mark.parametrize(
+    "ndf",
+    [
+        pytest.param(PROFILE, marks=pytest.mark.slow),
+        BLEND,
+        pytest.param(random_blend(6), marks=pytest.mark.slow),
+    ],
+    ids=["one", "blend", "angle"],
+)
 def test_normals_follow_their_density(ndf):
     normals = np.asarray(_normal(ndf, POINTS))
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, rtol=1e-13)
@@ -52,7 +60,9 @@ def test_normals_follow_their_density(ndf):
 
 
 @pytest.mark.parametrize("light", OUTGOING)
-@pytest.mark.parametrize("ndf", [PROFILE, BLEND], ids=["one", "blend"])
+@pytest.mark.parametrize(
+    "ndf", [pytest.param(PROFILE, marks=pytest.mark.slow), BLEND], ids=["one", "blend"]
+)
 def test_visible_normals_follow_their_density(ndf, light):
     outgoing = OUTGOING[light]
     normals = np.asarray(_visible(ndf, outgoing, POINTS))
@@ -71,6 +81,7 @@ def test_many_visible_normals_follow_their_density(ndf, theta_o):
     assert p_value(normals, upper(lambda at: _visible_pdf(ndf, outgoing, at))) > REJECTION
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ndf", [PROFILE, BLEND], ids=["one", "blend"])
 def test_reflections_follow_their_density(ndf):
     outgoing = OUTGOING["high"]
@@ -86,7 +97,7 @@ def test_wrong_densities_are_rejected():
     assert p_value(normals, upper(lambda at: _normal_pdf(BLEND, at))) < 1e-9
 
 
-@pytest.mark.parametrize("variable", ["angle", "cos2"])
+@pytest.mark.parametrize("variable", [pytest.param("angle", marks=pytest.mark.slow), "cos2"])
 def test_polar_angles_invert_their_cdf(variable):
     ndf = random_profile(3, 6, variable)
     samples = np.concatenate([[0.0, 1e-12, 1 - 1e-12], np.linspace(0.01, 0.99, 40)])
@@ -126,6 +137,7 @@ def test_segments_without_normals_are_never_drawn():
     assert theta.max() <= 0.9 + 1e-12
 
 
+@pytest.mark.slow
 def test_samples_are_differentiable():
     sample = jnp.array([0.3, 0.6])
 
