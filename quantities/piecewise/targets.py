@@ -60,7 +60,7 @@ def _rules(angles: jax.Array, places: jax.Array) -> tuple[jax.Array, jax.Array]:
     return jax.vmap(lambda theta_o: hidden_rule(theta_o, places, nodes=12))(angles)
 
 
-def target_of(name: str) -> Target:
+def analytic_ndf(name: str) -> Target:
     """Return the analytic target of a name such as 'ggx:0.1'. Raises ValueError for other names."""
     kind, _, numbers = name.partition(":")
     try:
@@ -88,7 +88,7 @@ def _numpy(function: Callable, parameters: tuple[float, ...], theta: np.ndarray)
     return np.asarray(function(theta, *parameters))
 
 
-def measured_target(
+def measured_ndf(
     path: Path, angle: str = "theta", value: str = "D", *, degrees: bool = False
 ) -> Target:
     """Return the target of a file with a column of angles and one of values of D.

@@ -10,7 +10,7 @@ from coefficients.ndf_table import SCHEMA, NdfErrors, NdfTable, read_ndf, serial
 from programs import precision_of, toolchain
 from quantities.piecewise.code import ndf_functions
 from quantities.piecewise.knots import equidistributed_knots
-from quantities.piecewise.targets import target_of
+from quantities.piecewise.targets import analytic_ndf
 from shading.piecewise.moments import normalised
 from shading.piecewise.ndf import profile
 from tests.integrals.piecewise_examples import random_profile
@@ -18,7 +18,7 @@ from tests.integrals.piecewise_examples import random_profile
 
 @pytest.fixture(scope="module")
 def table():
-    target = target_of("ggx:0.2")
+    target = analytic_ndf("ggx:0.2")
     knots = equidistributed_knots(target.of, 10)
     ndf = normalised(profile(knots, target.of(knots), "cos2"))
     return NdfTable(

@@ -6,7 +6,7 @@ import pytest
 
 from integrals.piecewise.albedo import average_albedo, directional_albedo
 from quantities.piecewise.knots import equidistributed_knots
-from quantities.piecewise.targets import target_of
+from quantities.piecewise.targets import analytic_ndf
 from shading import direction
 from shading.piecewise.hidden_area import hidden_area_closed
 from shading.piecewise.moments import normalised
@@ -46,7 +46,7 @@ def test_the_albedo_is_the_mean_of_reflections():
 @pytest.mark.parametrize("case", GGX)
 def test_the_albedo_of_a_fitted_ggx_approaches_that_of_ggx(case):
     width, mu = case
-    target = target_of(f"ggx:{width}")
+    target = analytic_ndf(f"ggx:{width}")
     knots = equidistributed_knots(target.of, 16)
     ndf = normalised(profile(knots, target.of(knots), "cos2"))
     # 3.4e-4 and 2.9e-4 were measured; four times less with twice the segments.
