@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shading.piecewise.blend import Blend, weights
+from shading.piecewise.blend import Blend
 from shading.piecewise.ndf import Profile
 
 
@@ -69,11 +69,11 @@ def visible_area(ndf: Blend, theta_o: float, phi_o: float, *, trapezoid: bool = 
     The integral over θ that has no closed form (Eq. 27) is computed by the trapezoid rule of Eq. 28
     if `trapezoid` is true, and else by Gauss points in a variable in which it is smooth.
     """
-    x, y = (float(each) for each in weights(ndf))
     edge, sine, cosine = np.pi / 2 - theta_o, np.sin(theta_o), np.cos(theta_o)
     turn = np.cos(2 * phi_o)
-    # The factors D_y(0)/c and D_x(0)/c are twice the weights.
-    parts = [(2 * x, 1.0, ndf.x), (2 * y, -1.0, ndf.y)]
+    x, y = float(ndf.x.values[0]), float(ndf.y.values[0])
+    c = (x + y) / 2
+    parts = [(y / c, 1.0, ndf.x), (x / c, -1.0, ndf.y)]
     front = cosine / 2
     back = rim = 0.0
     for factor, sign, profile in parts:

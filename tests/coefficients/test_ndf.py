@@ -70,6 +70,7 @@ def test_no_table_is_refused(tmp_path):
         read_ndf(tmp_path / "text.json")
 
 
+@pytest.mark.slow
 def test_code_has_the_values_of_the_library(table):
     """In float64 only the arctangent's polynomial and the rounding of float32 inputs differ."""
     limits = {"NdfD": 3e-5, "NdfHidden": 6e-7, "NdfVisibility": 3e-6, "NdfSquaredSine": 1e-7}

@@ -8,6 +8,7 @@ from integrals.piecewise.albedo import average_albedo, directional_albedo
 from quantities.piecewise.knots import equidistributed_knots
 from quantities.piecewise.targets import analytic_ndf
 from shading import direction
+from shading.microfacet.kulla_conty import multiple_scattering
 from shading.piecewise.hidden_area import hidden_area_closed
 from shading.piecewise.moments import normalised
 from shading.piecewise.ndf import profile
@@ -51,6 +52,18 @@ def test_the_albedo_of_a_fitted_ggx_approaches_that_of_ggx(case):
     ndf = normalised(profile(knots, target.of(knots), "cos2"))
     # 3.4e-4 and 2.9e-4 were measured; four times less with twice the segments.
     assert abs(float(_albedo(ndf, np.arccos(mu))) - GGX[case]) < 5e-4
+
+
+@pytest.mark.slow
+def test_kulla_and_conty_return_what_is_lost():
+    """In a furnace with F = 1, f_ms adds 1 − E(o): E_avg is the average of this E."""
+    average = float(average_albedo(NDF))
+    # Lights by another rule than that of the average: midpoints in ν.
+    nu = (np.arange(60) + 0.5) / 60
+    albedos = np.array([float(_albedo(NDF, each)) for each in np.arccos(nu)])
+    own = float(_albedo(NDF, 1.0))
+    added = [float(multiple_scattering(own, each, average)) for each in albedos]
+    np.testing.assert_allclose(2 * np.pi * np.mean(nu * added), 1 - own, rtol=2e-3)
 
 
 @pytest.mark.slow

@@ -168,7 +168,9 @@ def test_erratum_eq_28_creates_energy():
     assert float(hidden_area(ndf, angles[printed.argmax()])) > 0
 
 
-@pytest.mark.parametrize(("width", "lost"), [(0.05, 0.42), (0.01, 0.97)])
+@pytest.mark.parametrize(
+    ("width", "lost"), [pytest.param(0.05, 0.42, marks=pytest.mark.slow), (0.01, 0.97)]
+)
 def test_erratum_of_algorithm_2_it_does_not_end_in_float32(width, lost):
     ndf = normalised(sampled("ggx", width, 90))
     blend = Blend(ndf, ndf)

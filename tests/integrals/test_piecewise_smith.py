@@ -52,7 +52,9 @@ def test_a_narrow_ndf_loses_few_digits():
     np.testing.assert_allclose(_closed(ndf, angles), _quadrature(ndf, angles), rtol=3e-12)
 
 
-@pytest.mark.parametrize(("theta_o", "phi_o"), [(0.3, 0.0), (1.4, 2.0)])
+@pytest.mark.parametrize(
+    ("theta_o", "phi_o"), [pytest.param(0.3, 0.0, marks=pytest.mark.slow), (1.4, 2.0)]
+)
 def test_a_blend_has_the_area_of_the_definition(theta_o, phi_o):
     for variable in VARIABLES:
         ndf = random_blend(6, 5, variable)
@@ -61,6 +63,7 @@ def test_a_blend_has_the_area_of_the_definition(theta_o, phi_o):
         np.testing.assert_allclose(hidden_area(ndf, theta_o, phi_o), exact, rtol=1e-13, atol=1e-15)
 
 
+@pytest.mark.slow
 def test_the_area_of_any_isotropic_ndf():
     ndf = random_profile(9)
     found = hidden_area_of(lambda theta: density(ndf, theta), 1.1, ndf.knots)
@@ -86,9 +89,9 @@ def test_masking_is_between_zero_and_one_on_the_whole_domain(variable):
         ]
     )
     for ndf in (
-        random_profile(1, 9, variable),
+        random_profile(1, 10, variable),
         normalised(sampled("beckmann", 0.05, 10, variable)),
-        normalised(sampled("ggx", 0.1, 30, variable)),
+        normalised(sampled("ggx", 0.1, 10, variable)),
     ):
         g1 = np.asarray(_g1(ndf, angles))
         inside = angles < np.pi / 2
@@ -97,6 +100,7 @@ def test_masking_is_between_zero_and_one_on_the_whole_domain(variable):
         assert np.all(g1[~inside] < 1e-14)
 
 
+@pytest.mark.slow
 def test_grazing_light_sees_the_moment():
     ndf = random_profile(2, 6, "cos2")
     np.testing.assert_allclose(hidden_area(ndf, np.pi / 2), 2 * moment(ndf), rtol=1e-14)

@@ -20,7 +20,8 @@ def uniform(target, segments):
     return normalised(profile(knots, target.of(knots), "angle"))
 
 
-@pytest.mark.parametrize("name", [pytest.param("ggx:0.05", marks=pytest.mark.slow), "beckmann:0.1"])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["ggx:0.05", "beckmann:0.1"])
 def test_the_total_variation_is_ten_times_smaller_than_with_uniform_knots(name):
     target = analytic_ndf(name)
     fit = fit_ndf(target, 32)
@@ -33,7 +34,8 @@ def test_the_total_variation_is_ten_times_smaller_than_with_uniform_knots(name):
 def test_masking_of_ggx_is_that_of_its_formula():
     target = analytic_ndf("ggx:0.1")
     fit = fit_ndf(target, 32)
-    # 4.4e-7 was measured; uniform knots have 1.9e-3.
+    # 4.4e-7 was measured; uniform knots have 1.9e-3, and 12 times the total variation.
+    assert fit.total_variation < total_variation(uniform(target, 32), target) / 10
     assert fit.masking_error < 3e-6
     angles = np.linspace(0.01, 1.57, 50)
     exact = np.cos(angles) * (1 / ggx_g1(0.1, angles) - 1)
