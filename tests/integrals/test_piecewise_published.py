@@ -162,7 +162,7 @@ def test_erratum_eq_28_creates_energy():
     angles = np.linspace(0.05, 1.565, 120)
     printed = np.array([masking(blend, each, 0.0, trapezoid=True) for each in angles])
     assert abs(printed.max() - 1.027) < 1e-3
-    exact = np.array([masking(blend, each, 0.0) for each in angles])
+    exact = np.array([masking(blend, each, 0.0) for each in angles[::6]])
     assert exact.max() <= 1 + 1e-12
     # Λ < 0 there, while H is an integral of what is nowhere negative.
     assert float(hidden_area(ndf, angles[printed.argmax()])) > 0
