@@ -17,13 +17,8 @@ NAVIGATION = {
     "Guides": ("docs/own-integral", "docs/gallery", "docs/site/explorer"),
     "Reference": ("docs/site/commands", "docs/json", "docs/table-format", "docs/site/api"),
     "Mathematics": (
-        "docs/closed-form",
-        "docs/range",
-        "docs/certify",
-        "docs/r-theorem",
-        "docs/brdf",
-        "docs/microfacet",
-        "docs/microfacet-sampling",
+        *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
+        *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }

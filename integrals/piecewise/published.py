@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shading.piecewise.blend import Blend, weights
+from shading.piecewise.blend import Blend
 from shading.piecewise.ndf import Profile
 
 
@@ -54,13 +54,12 @@ def partial_moment(ndf: Profile, upper: float = np.pi / 2) -> float:
 
 def partial_mass(ndf: Profile, lower: float, upper: float) -> float:
     """Return 2π ∫ D cos θ sin θ dθ from `lower` to `upper`: the sums T of Eq. 9, 23 and 26."""
-    a, b, left, right = _segments(ndf, lower, upper)
-    total = (
-        2 * (a * left + b) * np.cos(2 * left)
-        - 2 * (a * right + b) * np.cos(2 * right)
-        + a * (np.sin(2 * right) - np.sin(2 * left))
-    )
-    return float(2 * np.pi / 8 * np.sum(total))
+    return float(np.sum(_masses(*_segments(ndf, lower, upper))))
+
+
+def tabulated_masses(ndf: Profile) -> np.ndarray:
+    """Return T (n,), the mass below each knot (Eq. 9)."""
+    return np.concatenate([[0.0], np.cumsum(_masses(*_segments(ndf)))])
 
 
 def visible_area(ndf: Blend, theta_o: float, phi_o: float, *, trapezoid: bool = False) -> Partial:
@@ -69,11 +68,11 @@ def visible_area(ndf: Blend, theta_o: float, phi_o: float, *, trapezoid: bool = 
     The integral over θ that has no closed form (Eq. 27) is computed by the trapezoid rule of Eq. 28
     if `trapezoid` is true, and else by Gauss points in a variable in which it is smooth.
     """
-    x, y = (float(each) for each in weights(ndf))
     edge, sine, cosine = np.pi / 2 - theta_o, np.sin(theta_o), np.cos(theta_o)
     turn = np.cos(2 * phi_o)
-    # The factors D_y(0)/c and D_x(0)/c are twice the weights.
-    parts = [(2 * x, 1.0, ndf.x), (2 * y, -1.0, ndf.y)]
+    x, y = float(ndf.x.values[0]), float(ndf.y.values[0])
+    c = (x + y) / 2
+    parts = [(y / c, 1.0, ndf.x), (x / c, -1.0, ndf.y)]
     front = cosine / 2
     back = rim = 0.0
     for factor, sign, profile in parts:
@@ -129,6 +128,15 @@ def _gauss(ndf: Profile, theta_o: float, turn: float, nodes: int = 40) -> float:
         both = values * (np.sin(theta_o) / 3 * first + np.cos(theta_o) * second)
         total += np.sum(weight * (high - low) / 2 * 2 * y * both)
     return float(total)
+
+
+def _masses(a: np.ndarray, b: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    total = (
+        2 * (a * left + b) * np.cos(2 * left)
+        - 2 * (a * right + b) * np.cos(2 * right)
+        + a * (np.sin(2 * right) - np.sin(2 * left))
+    )
+    return 2 * np.pi / 8 * total
 
 
 def _segments(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from integrals.piecewise.published import partial_mass
+from integrals.piecewise.published import tabulated_masses
 from shading.piecewise.blend import Blend, weights
 
 TOLERANCE = 1e-5
@@ -62,11 +62,7 @@ def algorithm_2(
     c = float(ndf.x.values[0] + ndf.y.values[0]) / 2
     # Alg. 2 does not divide by c: its numbers are of the order of D(0)².
     values = 2 * c * (x * along * np.asarray(ndf.x.values) + y * across * np.asarray(ndf.y.values))
-    both = [
-        2 * (x * along * partial_mass(ndf.x, 0.0, k) + y * across * partial_mass(ndf.y, 0.0, k))
-        for k in knots
-    ]
-    cdf = np.array(both)
+    cdf = 2 * (x * along * tabulated_masses(ndf.x) + y * across * tabulated_masses(ndf.y))
     xi = sample * cdf[-1]
     k = int(np.clip(np.searchsorted(cdf, xi, side="right") - 1, 0, len(knots) - 2))
     slope = (values[k + 1] - values[k]) / (knots[k + 1] - knots[k])

@@ -94,6 +94,18 @@ def _profile_area(ndf: Profile, theta_o: Scalar, turn: Array, nodes: int = 24) -
 
 
 def _area(of: Callable, breaks: Array, theta_o: Scalar, turn: Array, nodes: int) -> Array:
+    theta, weights = hidden_rule(theta_o, breaks, turn, nodes=nodes)
+    return jnp.sum(weights * of(theta))
+
+
+def hidden_rule(
+    theta_o: Scalar, breaks: Array | np.ndarray, turn: Scalar = 0.0, *, nodes: int = 24
+) -> tuple[Array, Array]:
+    """Return polar angles and weights, (m,) each: H is the sum of the weights times D there.
+
+    The rule is exact for D that is smooth between the `breaks` (n,), which increase from 0 to π/2,
+    and has `nodes` Gauss points between two of them. `turn` is ±cos 2φo for a part of a blend.
+    """
     theta_o = jnp.asarray(theta_o)
     sine, cosine = jnp.sin(theta_o), jnp.cos(theta_o)
     u, r = beyond_edge(breaks, theta_o)
@@ -102,15 +114,13 @@ def _area(of: Callable, breaks: Array, theta_o: Scalar, turn: Array, nodes: int)
     x, weight = np.polynomial.legendre.leggauss(nodes)
     half = jnp.diff(edges)[:, None] / 2
     at = (edges[:-1, None] + half * (x + 1)).ravel()
-    tangent = jnp.tan(at)
-    rim = jnp.sin(at)
+    tangent, rim = jnp.tan(at), jnp.sin(at)
     # cos θ = sin θo cos A. The angle itself is that of the sine, which keeps digits near θ = 0.
-    height = sine * jnp.cos(at)
     across = jnp.hypot(cosine, sine * rim)
-    theta = jnp.arctan2(across, height)
+    theta = jnp.arctan2(across, sine * jnp.cos(at))
     away = hidden_kernel(tangent, rim, cosine)
     lean = turn * sine**2 * rim**3 / (3 * across**2)
-    return 2 * jnp.sum((half * weight).ravel() * of(theta) * rim * (sine**2 * away + lean))
+    return theta, 2 * (half * weight).ravel() * rim * (sine**2 * away + lean)
 
 
 def hidden_kernel(tangent: Array, rim: Array, cosine: Array) -> Array:

@@ -141,7 +141,7 @@ def _squared_sine(ndf: Profile, xi) -> Array:
     total = jnp.zeros_like(goal)
     for k, width in enumerate(widths):
         if parts[k] <= 0:
-            total = total + jnp.where(goal > before[k], width, 0.0)
+            total = total + jnp.where(goal >= before[k], width, 0.0)
             continue
         rest = jnp.minimum(jnp.maximum(goal - before[k], 0.0), parts[k])
         slope = (values[k + 1] - values[k]) / width

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from integrals.data import table
-from integrals.piecewise.smith import hidden_area_of
+from integrals.piecewise.smith import hidden_rule
 from shading.piecewise import slopes
 
 # Steps between the angles at which a target is integrated: small enough for widths above 0.002.
@@ -51,22 +51,16 @@ def gauss_points(ends: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 def hidden_areas_of(of: Callable, angles: np.ndarray) -> np.ndarray:
     """Return H (k,) of an isotropic NDF at polar angles (k,)."""
-    # The NDF is evaluated outside of JAX, which measured ones do not know.
-    places, nodes = breaks(), 12
-
-    def area(theta_o):
-        def values(theta):
-            shape = jax.ShapeDtypeStruct(theta.shape, theta.dtype)
-            return jax.pure_callback(
-                lambda at: np.asarray(of(np.asarray(at))), shape, theta, vmap_method="sequential"
-            )
-
-        return hidden_area_of(values, theta_o, places, nodes=nodes)
-
-    return np.asarray(jax.jit(lambda at: jax.lax.map(area, at))(angles))
+    theta, weights = (np.asarray(each) for each in _rules(np.asarray(angles), breaks()))
+    return np.sum(weights * np.reshape(of(theta.ravel()), theta.shape), axis=1)
 
 
-def target_of(name: str) -> Target:
+@jax.jit
+def _rules(angles: jax.Array, places: jax.Array) -> tuple[jax.Array, jax.Array]:
+    return jax.vmap(lambda theta_o: hidden_rule(theta_o, places, nodes=12))(angles)
+
+
+def analytic_ndf(name: str) -> Target:
     """Return the analytic target of a name such as 'ggx:0.1'. Raises ValueError for other names."""
     kind, _, numbers = name.partition(":")
     try:
@@ -94,7 +88,7 @@ def _numpy(function: Callable, parameters: tuple[float, ...], theta: np.ndarray)
     return np.asarray(function(theta, *parameters))
 
 
-def measured_target(
+def measured_ndf(
     path: Path, angle: str = "theta", value: str = "D", *, degrees: bool = False
 ) -> Target:
     """Return the target of a file with a column of angles and one of values of D.

@@ -167,15 +167,15 @@ def _table(source: str, given: dict) -> "NdfTable":
     if path.suffix == ".json":
         return read_ndf(path)
     from quantities.piecewise.fit import fit_ndf
-    from quantities.piecewise.targets import measured_target, target_of
+    from quantities.piecewise.targets import analytic_ndf, measured_ndf
 
     command = ["shadefit", "ndf", source]
-    if path.suffix or path.exists():
-        target = measured_target(path, given["theta"], given["D"], degrees=given["degrees"])
+    if path.exists() or path.suffix in (".csv", ".npy", ".npz"):
+        target = measured_ndf(path, given["theta"], given["D"], degrees=given["degrees"])
         command += ["--theta", given["theta"], "--value", given["D"]]
         command += ["--degrees"] if given["degrees"] else []
     else:
-        target = target_of(source)
+        target = analytic_ndf(source)
     segments, linear_in, monotone = given["segments"], given["linear_in"], given["monotone"]
     command += ["--segments", str(segments), "--linear-in", linear_in]
     command += ["--monotone"] if monotone else []

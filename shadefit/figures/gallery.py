@@ -9,6 +9,7 @@ from shadefit.figures.fuzz_pictures import DRAWN, fuzz_pictures
 from shadefit.figures.maps import draw_errors
 from shadefit.figures.microfacet_pictures import microfacet_pictures
 from shadefit.figures.microfacet_sampling import sampling_pictures
+from shadefit.figures.ndf import ndf_pictures
 from shadefit.figures.picture import Picture
 from shadefit.figures.result import draw_data
 
@@ -36,7 +37,12 @@ def pictures() -> dict[str, Picture]:
         for owner in problems().values()
         if owner not in DRAWN and len(owner.axes) in _DRAW
     }
-    topics = {**fuzz_pictures(), **microfacet_pictures(), **sampling_pictures()}
+    topics = {
+        **fuzz_pictures(),
+        **microfacet_pictures(),
+        **sampling_pictures(),
+        **ndf_pictures(),
+    }
     return {**topics, **others, "frontier": _FRONTIER}
 
 

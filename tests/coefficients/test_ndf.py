@@ -7,10 +7,10 @@ import pytest
 
 from coefficients.ndf_code import check_ndf, ndf_source, ndf_trials, profile_of
 from coefficients.ndf_table import SCHEMA, NdfErrors, NdfTable, read_ndf, serialise_ndf
-from programs import toolchain
+from programs import precision_of, toolchain
 from quantities.piecewise.code import ndf_functions
 from quantities.piecewise.knots import equidistributed_knots
-from quantities.piecewise.targets import target_of
+from quantities.piecewise.targets import analytic_ndf
 from shading.piecewise.moments import normalised
 from shading.piecewise.ndf import profile
 from tests.integrals.piecewise_examples import random_profile
@@ -18,7 +18,7 @@ from tests.integrals.piecewise_examples import random_profile
 
 @pytest.fixture(scope="module")
 def table():
-    target = target_of("ggx:0.2")
+    target = analytic_ndf("ggx:0.2")
     knots = equidistributed_knots(target.of, 10)
     ndf = normalised(profile(knots, target.of(knots), "cos2"))
     return NdfTable(
@@ -70,15 +70,17 @@ def test_no_table_is_refused(tmp_path):
         read_ndf(tmp_path / "text.json")
 
 
+@pytest.mark.slow
 def test_code_has_the_values_of_the_library(table):
     """In float64 only the arctangent's polynomial and the rounding of float32 inputs differ."""
-    limits = {"NdfD": 3e-5, "NdfHidden": 2e-7, "NdfVisibility": 3e-6, "NdfSquaredSine": 1e-7}
+    limits = {"NdfD": 3e-5, "NdfHidden": 6e-7, "NdfVisibility": 3e-6, "NdfSquaredSine": 1e-7}
     for trial in ndf_trials(profile_of(table), "float"):
         (function,) = trial.calls.functions
         found = trial.emulated(np.float64)
         assert np.abs(found - trial.integral).max() < limits[function.name], function.name
 
 
+@pytest.mark.slow
 def test_a_profile_with_gaps_has_code_too():
     ndf = normalised(
         profile(
@@ -89,13 +91,15 @@ def test_a_profile_with_gaps_has_code_too():
         assert np.abs(trial.emulated(np.float32) - trial.integral).max() < 2e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["c", "javascript"])
 def test_code_is_run(table, key):
-    if toolchain(key).missing(None) is not None:
+    if toolchain(key).missing(precision_of(key, None)) is not None:
         pytest.skip(f"{key} is not installed")
     assert [each.status for each in check_ndf(table, key)] == ["passed"] * 4
 
 
+@pytest.mark.slow
 def test_code_is_the_same_bytes_with_its_knots_in_an_array(table):
     source = ndf_source(table, "hlsl", name="Cloth")
     assert source == ndf_source(table, "hlsl", name="Cloth")

@@ -162,13 +162,15 @@ def test_erratum_eq_28_creates_energy():
     angles = np.linspace(0.05, 1.565, 120)
     printed = np.array([masking(blend, each, 0.0, trapezoid=True) for each in angles])
     assert abs(printed.max() - 1.027) < 1e-3
-    exact = np.array([masking(blend, each, 0.0) for each in angles])
+    exact = np.array([masking(blend, each, 0.0) for each in angles[::6]])
     assert exact.max() <= 1 + 1e-12
     # Λ < 0 there, while H is an integral of what is nowhere negative.
     assert float(hidden_area(ndf, angles[printed.argmax()])) > 0
 
 
-@pytest.mark.parametrize(("width", "lost"), [(0.05, 0.42), (0.01, 0.97)])
+@pytest.mark.parametrize(
+    ("width", "lost"), [pytest.param(0.05, 0.42, marks=pytest.mark.slow), (0.01, 0.97)]
+)
 def test_erratum_of_algorithm_2_it_does_not_end_in_float32(width, lost):
     ndf = normalised(sampled("ggx", width, 90))
     blend = Blend(ndf, ndf)

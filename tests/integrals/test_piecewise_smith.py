@@ -26,9 +26,8 @@ from tests.integrals.piecewise_examples import (
     values_of,
 )
 
-ANGLES = np.array([1e-6, 1e-3, 0.03, 0.4, 1.0, 1.4, 1.5, 1.55, 1.57, np.pi / 2])
-# Relative, of H for 8 profiles at 400 angles: 7e-16 was measured for the quadrature. The closed
-# form has 4e-15 for profiles of the order of one.
+ANGLES = np.array([1e-6, 1e-3, 0.4, 1.0, 1.5, 1.57, np.pi / 2])
+# Relative, of H. 7e-16 was measured for the quadrature.
 QUADRATURE, CLOSED = 4e-15, 8e-15
 
 _quadrature = jax.jit(jax.vmap(hidden_area_quadrature, (None, 0)))
@@ -38,14 +37,14 @@ _g1 = jax.jit(jax.vmap(smith_g1, (None, 0)))
 
 @pytest.mark.parametrize("variable", VARIABLES)
 def test_the_hidden_area_is_exact(variable):
-    for seed in (3, 4):
-        ndf = random_profile(seed, 6, variable)
-        exact = np.array([float(exact_hidden_area(ndf, each)) for each in ANGLES])
-        np.testing.assert_allclose(_quadrature(ndf, ANGLES), exact, rtol=QUADRATURE)
-        if variable == "cos2":
-            np.testing.assert_allclose(_closed(ndf, ANGLES), exact, rtol=CLOSED)
+    ndf = random_profile(3, 4, variable)
+    exact = np.array([float(exact_hidden_area(ndf, each)) for each in ANGLES])
+    np.testing.assert_allclose(_quadrature(ndf, ANGLES), exact, rtol=QUADRATURE)
+    if variable == "cos2":
+        np.testing.assert_allclose(_closed(ndf, ANGLES), exact, rtol=CLOSED)
 
 
+@pytest.mark.slow
 def test_a_narrow_ndf_loses_few_digits():
     """In the peak of GGX a + bu² cancels; the quadrature evaluates D itself."""
     ndf = normalised(sampled("ggx", 0.1, 90, "cos2"))
@@ -53,7 +52,9 @@ def test_a_narrow_ndf_loses_few_digits():
     np.testing.assert_allclose(_closed(ndf, angles), _quadrature(ndf, angles), rtol=3e-12)
 
 
-@pytest.mark.parametrize(("theta_o", "phi_o"), [(0.3, 0.0), (0.9, 0.7), (1.4, 2.0), (1.55, 1.5)])
+@pytest.mark.parametrize(
+    ("theta_o", "phi_o"), [pytest.param(0.3, 0.0, marks=pytest.mark.slow), (1.4, 2.0)]
+)
 def test_a_blend_has_the_area_of_the_definition(theta_o, phi_o):
     for variable in VARIABLES:
         ndf = random_blend(6, 5, variable)
@@ -62,6 +63,7 @@ def test_a_blend_has_the_area_of_the_definition(theta_o, phi_o):
         np.testing.assert_allclose(hidden_area(ndf, theta_o, phi_o), exact, rtol=1e-13, atol=1e-15)
 
 
+@pytest.mark.slow
 def test_the_area_of_any_isotropic_ndf():
     ndf = random_profile(9)
     found = hidden_area_of(lambda theta: density(ndf, theta), 1.1, ndf.knots)
@@ -76,7 +78,7 @@ def test_the_area_of_any_isotropic_ndf():
         np.testing.assert_allclose(hidden_area_of(ggx, theta_o, breaks), known, rtol=1e-12)
 
 
-@pytest.mark.parametrize("variable", VARIABLES)
+@pytest.mark.parametrize("variable", [pytest.param("angle", marks=pytest.mark.slow), "cos2"])
 def test_masking_is_between_zero_and_one_on_the_whole_domain(variable):
     """H ≥ 0 is proven in docs/piecewise-ndf.md; rounding does not break it either."""
     angles = np.concatenate(
@@ -87,9 +89,9 @@ def test_masking_is_between_zero_and_one_on_the_whole_domain(variable):
         ]
     )
     for ndf in (
-        random_profile(1, 9, variable),
+        random_profile(1, 10, variable),
         normalised(sampled("beckmann", 0.05, 10, variable)),
-        normalised(sampled("ggx", 0.1, 30, variable)),
+        normalised(sampled("ggx", 0.1, 10, variable)),
     ):
         g1 = np.asarray(_g1(ndf, angles))
         inside = angles < np.pi / 2
@@ -98,6 +100,7 @@ def test_masking_is_between_zero_and_one_on_the_whole_domain(variable):
         assert np.all(g1[~inside] < 1e-14)
 
 
+@pytest.mark.slow
 def test_grazing_light_sees_the_moment():
     ndf = random_profile(2, 6, "cos2")
     np.testing.assert_allclose(hidden_area(ndf, np.pi / 2), 2 * moment(ndf), rtol=1e-14)
@@ -134,6 +137,7 @@ def test_g2_is_finite_everywhere_and_symmetric():
     assert smith_g2(ndf, 0.0, 0.0) == 1
 
 
+@pytest.mark.slow
 def test_derivatives_are_finite_and_right():
     ndf = random_profile(5, 6, "cos2")
     slope = jax.jit(jax.vmap(jax.grad(lambda t: hidden_area(ndf, t))))

@@ -1,6 +1,7 @@
 """`shadefit ndf`: from a file or a name to a table and to code; bad input is one line."""
 
 import json
+import math
 
 import pytest
 
@@ -15,12 +16,29 @@ def run(*arguments) -> int:
     return ended.value.code
 
 
+def test_a_table_is_read(tmp_path, capsys):
+    table = {"schema": "shadefit.ndf/1", "target": "steps", "linear_in": "cos2", "monotone": True}
+    table |= {"knots": [0.0, 1.0, math.pi / 2], "values": [0.5, 0.25, 0.0], "mass": 1.0}
+    table |= {
+        "errors": {"total_variation": 0.5, "masking": 0.1, "directions": 9},
+        "command": "none",
+    }
+    file, copy = tmp_path / "steps.json", tmp_path / "copy.json"
+    file.write_text(json.dumps(table))
+    assert run(file, "--out", copy, "--json") == 0
+    assert CHECKED.validate_json(capsys.readouterr().out).values == table["values"]
+    assert json.loads(copy.read_text()) == table
+    assert run(file) == 0
+    assert "1.00e-01" in capsys.readouterr().out
+
+
+@pytest.mark.slow
 def test_a_fit_is_written_and_exported(tmp_path, capsys):
     file, code = tmp_path / "ggx.json", tmp_path / "ggx.glsl"
-    assert run("ggx:0.2", "--segments", 8, "--out", file, "--json") == 0
+    assert run("ggx:0.2", "--segments", 12, "--out", file, "--json") == 0
     said = CHECKED.validate_json(capsys.readouterr().out)
     table = read_ndf(file)
-    assert (said.segments, said.files) == (8, [str(file)])
+    assert (said.segments, said.files) == (12, [str(file)])
     assert table.values == said.values
     assert run(file, "--to", "glsl", "--code", code, "--name", "Lobe") == 0
     assert "float LobeHidden(float NdotV)" in code.read_text()
@@ -31,6 +49,7 @@ def test_a_fit_is_written_and_exported(tmp_path, capsys):
     assert again.read_text() == file.read_text()
 
 
+@pytest.mark.slow
 def test_the_columns_of_a_file(tmp_path, capsys):
     path = tmp_path / "lobe.csv"
     rows = [f"{t},{(90 - t) ** 2}" for t in range(0, 91, 10)]

@@ -41,6 +41,7 @@ def test_values_mass_and_moment_are_those_of_quadrature(variable):
         assert abs(float(mass_below(ndf, upper)) - part) < ROUNDING
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variable", VARIABLES)
 def test_narrow_segments_lose_no_digits(variable):
     knots = np.concatenate([np.geomspace(1e-5, np.pi / 2, 40)])
@@ -132,6 +133,7 @@ def test_defects_keep_their_digits():
                 assert abs(float(mp.mpf(float(one)) / other - 1)) < 4e-15
 
 
+@pytest.mark.slow
 def test_the_mass_is_linear_in_the_values_and_differentiable():
     ndf = random_profile(8)
     slopes_of = jax.grad(lambda values: mass(Profile(ndf.knots, values)))(ndf.values)

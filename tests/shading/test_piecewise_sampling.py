@@ -44,15 +44,25 @@ def upper(pdf):
     return lambda at: np.where(at[:, 2] > 0, pdf(np.where(at[:, 2:] > 0, at, [0.0, 0.0, 1.0])), 0)
 
 
-@pytest.mark.parametrize("ndf", [PROFILE, BLEND, random_blend(6)], ids=["one", "blend", "angle"])
+@pytest.mark.parametrize(
+    "ndf",
+    [
+        pytest.param(PROFILE, marks=pytest.mark.slow),
+        BLEND,
+        pytest.param(random_blend(6), marks=pytest.mark.slow),
+    ],
+    ids=["one", "blend", "angle"],
+)
 def test_normals_follow_their_density(ndf):
     normals = np.asarray(_normal(ndf, POINTS))
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, rtol=1e-13)
     assert p_value(normals, upper(lambda at: _normal_pdf(ndf, at))) > REJECTION
 
 
-@pytest.mark.parametrize("light", OUTGOING)
-@pytest.mark.parametrize("ndf", [PROFILE, BLEND], ids=["one", "blend"])
+@pytest.mark.parametrize("light", [pytest.param("high", marks=pytest.mark.slow), "grazing"])
+@pytest.mark.parametrize(
+    "ndf", [PROFILE, pytest.param(BLEND, marks=pytest.mark.slow)], ids=["one", "blend"]
+)
 def test_visible_normals_follow_their_density(ndf, light):
     outgoing = OUTGOING[light]
     normals = np.asarray(_visible(ndf, outgoing, POINTS))
@@ -66,11 +76,12 @@ def test_visible_normals_follow_their_density(ndf, light):
 @pytest.mark.parametrize("ndf", [PROFILE, BLEND], ids=["one", "blend"])
 def test_many_visible_normals_follow_their_density(ndf, theta_o):
     outgoing = direction(theta_o, 0.7)
-    points = np.random.default_rng(8).random((200_000, 2))
+    points = np.random.default_rng(8).random((60_000, 2))
     normals = np.asarray(_visible(ndf, outgoing, points))
     assert p_value(normals, upper(lambda at: _visible_pdf(ndf, outgoing, at))) > REJECTION
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ndf", [PROFILE, BLEND], ids=["one", "blend"])
 def test_reflections_follow_their_density(ndf):
     outgoing = OUTGOING["high"]
@@ -78,6 +89,7 @@ def test_reflections_follow_their_density(ndf):
     assert p_value(incoming, lambda at: _reflection_pdf(ndf, outgoing, at)) > REJECTION
 
 
+@pytest.mark.slow
 def test_wrong_densities_are_rejected():
     outgoing = OUTGOING["grazing"]
     normals = np.asarray(_visible(BLEND, outgoing, POINTS))
@@ -86,6 +98,7 @@ def test_wrong_densities_are_rejected():
     assert p_value(normals, upper(lambda at: _normal_pdf(BLEND, at))) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variable", ["angle", "cos2"])
 def test_polar_angles_invert_their_cdf(variable):
     ndf = random_profile(3, 6, variable)
@@ -114,6 +127,7 @@ def test_azimuths_invert_their_cdf():
     assert np.abs(cdf - steps).max() < 2 / np.sqrt(len(cdf))
 
 
+@pytest.mark.slow
 def test_segments_without_normals_are_never_drawn():
     ndf = normalised(
         profile(
@@ -126,6 +140,7 @@ def test_segments_without_normals_are_never_drawn():
     assert theta.max() <= 0.9 + 1e-12
 
 
+@pytest.mark.slow
 def test_samples_are_differentiable():
     sample = jnp.array([0.3, 0.6])
 
@@ -153,6 +168,7 @@ def test_the_root_of_an_increasing_function():
     assert increasing_root(cubic, 1.0, 0.0, -1.0, 2.0) < 1e-6
 
 
+@pytest.mark.slow
 def test_the_visible_area_at_the_normal_is_one():
     np.testing.assert_allclose(visible_area(BLEND, jnp.array([0.0, 0.0, 1.0])), 1, rtol=1e-14)
 
