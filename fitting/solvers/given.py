@@ -7,6 +7,7 @@ import numpy as np
 from fitting.form import Form
 from fitting.goal import Goal
 from fitting.points.sample import sample_of
+from fitting.solvers.elsewhere import Counterexamples
 from fitting.solvers.exchange import ScatteredFit
 from fitting.solvers.on_grid import Progress
 
@@ -20,9 +21,18 @@ class Given:
     converged: bool
 
     def fit(
-        self, form: Form, goal: Goal, measure: str, _: np.ndarray | None, progress: Progress
+        self,
+        form: Form,
+        goal: Goal,
+        measure: str,
+        start: np.ndarray | None,
+        progress: Progress,
+        counterexamples: Counterexamples | None = None,
     ) -> ScatteredFit:
-        """Return the coefficients with the sample on which a form is fitted to a goal."""
+        """Return the coefficients with the sample on which a form is fitted to a goal.
+
+        The arguments are those of `Exchange.fit`. The start and the search are not used.
+        """
         progress(f"exact {form.reference.symbol} where {form.name} is fitted")
         sample = sample_of(form, goal, measure)
         return ScatteredFit(self.coefficients, sample, self.converged, self.solver)

@@ -7,7 +7,7 @@ and Q > 0, all values are in [0, 1].
 """
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,14 +20,12 @@ from fitting.shapes.monomial_sums import ONE, nested_horner
 from fitting.shapes.monomials import Exponents
 from integrals.microfacet.references import GGX_DIRECTIONAL_ALBEDO
 from integrals.reference import restricted
+from quantities.microfacet.equations import Terms, albedo_equation, coefficients
 from shading.types import Scalar
 
 # E has a dip at μ ≈ α. No form with few coefficients has it for every α, however small.
 LEAST_ALPHA = 0.01
 AXES = restricted(GGX_DIRECTIONAL_ALBEDO.axes, alpha=(LEAST_ALPHA, 1.0))
-NOTATION = (
-    "κ = 1 − α², σ = √(α² + κ μ²), p = μ/σ, a = α/σ, 2N/σ = (κ p + d)²/(2 d), d = √(κ² p² + 4 a²)"
-)
 # The monomials of R are at least of this degree, those of Q too.
 _DEGREE_OF_R, _DEGREE_OF_Q = 1, 3
 # At small α and μ, s is 1.2 (docs/microfacet.md).
@@ -59,7 +57,7 @@ def lobe(mu: Scalar, alpha: Scalar) -> Lobe:
 
 def masked(at: Lobe, r: Any, q: Any) -> Array:
     """Return E = 2N/(μ (1 + a² r/q) + σ), with one division besides those of the lobe."""
-    # notation: as in NOTATION
+    # notation: 2N/σ = w²/(2 d)
     kp = at.kappa * at.p
     d = jnp.sqrt(kp * kp + 4 * at.a2)
     w = kp + d
@@ -71,17 +69,24 @@ def sums(c: Any, at: Lobe, numerator: Exponents, denominator: Exponents) -> tupl
 
     `c` has the coefficients of R, then those of Q.
     """
+    above, below = terms_of(c, numerator, denominator)
+    factors = (at.p, at.a, at.mu, at.alpha)
+    return nested_horner(above, factors), nested_horner(below, factors)
+
+
+def terms_of(c: Sequence[Any], numerator: Exponents, denominator: Exponents) -> tuple[Terms, Terms]:
+    """Return the terms of R/σ and Q/σ³: the exponents of p, a, μ and α, and the coefficients."""
     split = len(numerator)
     free = (c[split + k] for k in range(len(denominator) - 1))
     above = [c[k] for k in range(split)]
     return (
-        _scaled(numerator, above, at, _DEGREE_OF_R),
-        _scaled(denominator, [ONE, *free], at, _DEGREE_OF_Q),
+        _scaled(numerator, above, _DEGREE_OF_R),
+        _scaled(denominator, [ONE, *free], _DEGREE_OF_Q),
     )
 
 
-def _scaled(exponents: Exponents, coefficients: list, at: Lobe, degree: int) -> Any:
-    """Return Σ c μⁱαʲ/σ^degree. So many of the factors μ and α are replaced by p and a.
+def _scaled(exponents: Exponents, coefficients: list, degree: int) -> Terms:
+    """Return the terms of Σ c μⁱαʲ/σ^degree: so many factors μ and α are replaced by p and a.
 
     None of the factors is small then, even in half precision, unless the monomial is.
     """
@@ -90,7 +95,7 @@ def _scaled(exponents: Exponents, coefficients: list, at: Lobe, degree: int) -> 
         p = min(i, degree)
         a = min(j, degree - p)
         terms[(p, a, i - p, j - a)] = c
-    return nested_horner(terms, (at.p, at.a, at.mu, at.alpha))
+    return terms
 
 
 def monomial_names(letter: str, exponents: Exponents, symbols: str = "μα") -> list[str]:
@@ -124,12 +129,10 @@ def masked_albedo(*, numerator: Exponents, denominator: Exponents) -> Form:
     def margins(c, mu: Scalar, alpha: Scalar) -> tuple[Array, ...]:
         return sums(c, lobe(mu, alpha), numerator, denominator)
 
+    names = coefficients(0, len(numerator) + len(denominator) - 1)
     return Form(
         name="masked-ggx-directional-albedo",
-        equation=(
-            f"E = 2N/(μs + σ), s = 1 + α² R/Q, "
-            f"{len(numerator)} and {len(denominator)} monomials μ^i α^j"
-        ),
+        equation=albedo_equation(*terms_of(names, numerator, denominator)),
         reference=GGX_DIRECTIONAL_ALBEDO,
         axes=AXES,
         coefficient_names=[
@@ -143,7 +146,6 @@ def masked_albedo(*, numerator: Exponents, denominator: Exponents) -> Form:
             "denominator": [list(each) for each in denominator],
         },
         proofs=Proofs(margins=margins),
-        notation=NOTATION,
     )
 
 

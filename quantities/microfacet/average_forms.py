@@ -19,6 +19,7 @@ from fitting.solvers.on_grid import OnGrid
 from integrals.microfacet.references import GGX_AVERAGE_ALBEDO
 from integrals.reference import restricted
 from quantities.microfacet.albedo_forms import LEAST_ALPHA
+from quantities.microfacet.equations import average_equation
 from shading.types import Scalar
 
 AXES = restricted(GGX_AVERAGE_ALBEDO.axes, alpha=(LEAST_ALPHA, 1.0))
@@ -36,7 +37,7 @@ def _cubic(c, alpha: Scalar) -> Array:
 # There are no constants in print for E_avg: the default form is the plainest one.
 CUBIC = Form(
     name="cubic-ggx-average-albedo",
-    equation="E_avg = 1 + c₀α + c₁α² + c₂α³",
+    equation="E_avg = 1 + c0·α + c1·α² + c2·α³",
     reference=GGX_AVERAGE_ALBEDO,
     axes=AXES,
     coefficient_names=["c0: α", "c1: α²", "c2: α³"],
@@ -65,10 +66,9 @@ def average_form(*, structure: str, above: int, below: int) -> Form:
             r = C0 - jnp.log(a) + a * r
         return 1 - a * a * r
 
-    shown = "ln(1/α) + c₀ + α N/D" if structure == "log" else "N/D"
     return Form(
         name="quotient-ggx-average-albedo",
-        equation=f"E_avg = 1 − α² ({shown}), {above} and 1 + {below} powers of α",
+        equation=average_equation(above, below, C0 if structure == "log" else None),
         reference=GGX_AVERAGE_ALBEDO,
         axes=AXES,
         coefficient_names=[

@@ -12,6 +12,7 @@ from fitting.solvers.on_grid import MARQUARDT, OnGrid, solve_in_general
 from integrals.microfacet.references import GGX_BIAS, GGX_DIRECTIONAL_ALBEDO, GGX_SCALE
 from integrals.reference import Reference
 from quantities.microfacet.albedo_forms import AXES, monomial_names
+from quantities.microfacet.equations import biquadratic_equation, both_equation
 from shading.types import Scalar
 
 # The exponents of μ and α, in the order of MaterialX's code.
@@ -70,7 +71,7 @@ def _fit_both(grid: Grid, exact: Array) -> Array:
 BIQUADRATIC_SCALE = _form(
     "biquadratic-ggx-scale",
     GGX_SCALE,
-    "A = N/D, biquadratic polynomials of μ and α",
+    biquadratic_equation("A", MONOMIALS),
     _names(),
     quotient,
     OnGrid(gauss_grid),
@@ -78,7 +79,7 @@ BIQUADRATIC_SCALE = _form(
 BIQUADRATIC_BIAS = _form(
     "biquadratic-ggx-bias",
     GGX_BIAS,
-    "B = N/D, biquadratic polynomials of μ and α",
+    biquadratic_equation("B", MONOMIALS),
     _names(),
     quotient,
     OnGrid(gauss_grid),
@@ -86,7 +87,7 @@ BIQUADRATIC_BIAS = _form(
 SPLIT_ALBEDO = _form(
     "split-ggx-directional-albedo",
     GGX_DIRECTIONAL_ALBEDO,
-    "E = A + B, A and B quotients of biquadratic polynomials of μ and α, clamped to [0, 1]",
+    both_equation(MONOMIALS),
     [*_names(" of A"), *_names(" of B")],
     _both,
     OnGrid(gauss_grid, _fit_both, MARQUARDT),

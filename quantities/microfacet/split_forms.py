@@ -20,16 +20,17 @@ from integrals.reference import Reference
 from quantities.microfacet.albedo_forms import (
     AXES,
     CHOSEN,
-    NOTATION,
     Lobe,
     lobe,
     masked,
     monomial_names,
     sums,
+    terms_of,
 )
+from quantities.microfacet.equations import Terms, coefficients, constants, split_equation
 from shading.types import Scalar
 
-# E of A and B: the monomials, and the coefficients of best/ggx-directional-albedo-11.
+# E of A and B: the monomials, and the coefficients of best/ggx-directional-albedo-57.
 ALBEDO = CHOSEN[4]
 ALBEDO_COEFFICIENTS = (
     *(0.02782144956290722, 0.8143289089202881, 0.27866560220718384, 1.2222470045089722),
@@ -50,16 +51,17 @@ def albedo(at: Lobe) -> Array:
 
 def _parts(c: Any, at: Lobe, numerator: Exponents, denominator: Exponents) -> tuple[Any, Any]:
     """Return V and T, with the coefficients of V first."""
-    split, variables = len(numerator), (at.mu, at.sigma)
-    above: dict[tuple[int, ...], Any] = dict(
-        zip(numerator, (c[k] for k in range(split)), strict=True)
-    )
+    above, below = _terms(c, numerator, denominator)
+    variables = (at.mu, at.sigma)
+    return nested_horner(above, variables), nested_horner(below, variables)
+
+
+def _terms(c: Any, numerator: Exponents, denominator: Exponents) -> tuple[Terms, Terms]:
+    """Return the terms of V and T: the exponents of μ and σ, and the coefficients."""
+    split = len(numerator)
     free = (c[split + k] for k in range(len(denominator) - 1))
-    below: dict[tuple[int, ...], Any] = dict(zip(denominator, (ONE, *free), strict=True))
-    return (
-        nested_horner(above, variables),
-        nested_horner(below, variables),
-    )
+    above = dict(zip(numerator, (c[k] for k in range(split)), strict=True))
+    return above, dict(zip(denominator, (ONE, *free), strict=True))
 
 
 def _fifth(c: Any, at: Lobe, numerator: Exponents, denominator: Exponents) -> Array:
@@ -104,11 +106,14 @@ def _masked(
         v, t = _parts(c, at, numerator, denominator)
         return (v, t - v, *sums(ALBEDO_COEFFICIENTS, at, *ALBEDO))
 
+    size = len(numerator) + len(denominator) - 1
     return Form(
         name=f"masked-{owner.name}",
-        equation=(
-            f"{symbol} = {text}, t = V/T, {len(numerator)} and {len(denominator)} "
-            "monomials μ^i σ^j, E = 2N/(μs + σ)"
+        equation=split_equation(
+            symbol,
+            text,
+            *terms_of(constants(ALBEDO_COEFFICIENTS), *ALBEDO),
+            *_terms(coefficients(0, size), numerator, denominator),
         ),
         reference=owner,
         axes=AXES,
@@ -123,7 +128,6 @@ def _masked(
             "denominator": [list(each) for each in denominator],
         },
         proofs=Proofs(margins=margins),
-        notation=NOTATION,
     )
 
 
@@ -133,13 +137,13 @@ def masked_bias(*, numerator: Exponents, denominator: Exponents) -> Form:
 
     The first monomial of T has the coefficient 1.
     """
-    return _masked(GGX_BIAS, "B", "E t⁵", lambda e, t: e * t, numerator, denominator)
+    return _masked(GGX_BIAS, "B", "E·t⁵", lambda e, t: e * t, numerator, denominator)
 
 
 @functools.cache
 def masked_scale(*, numerator: Exponents, denominator: Exponents) -> Form:
     """Return the form A = E (1 − t⁵), with the arguments of `masked_bias`."""
-    return _masked(GGX_SCALE, "A", "E (1 − t⁵)", lambda e, t: e * (1 - t), numerator, denominator)
+    return _masked(GGX_SCALE, "A", "E·(1 − t⁵)", lambda e, t: e * (1 - t), numerator, denominator)
 
 
 # The monomials of V and T that a search tries, found by leaving out single ones of all up to the
