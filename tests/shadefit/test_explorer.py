@@ -140,7 +140,11 @@ def require_the_same(owners):
         expected = owner.reference.values(points[owner.name])
         # R is averaged by a rule of 48² points, whose error is largest for the least α.
         allowed = 1e-12 if owner.closed_form else 1e-6
-        np.testing.assert_allclose(exact, expected, rtol=0, atol=allowed)
+        # A browser cannot evaluate an integral that is no average of a closed form.
+        if owner.closed_form is None and owner.average is None:
+            assert set(exact) == {None}
+        else:
+            np.testing.assert_allclose(exact, expected, rtol=0, atol=allowed)
         for name, each in found.items():
             expected = exported_values(resolve(name), points[owner.name])
             np.testing.assert_allclose(each, expected, rtol=0, atol=1e-12, err_msg=name)
