@@ -7,7 +7,7 @@ and Q > 0, all values are in [0, 1].
 """
 
 import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -74,7 +74,7 @@ def sums(c: Any, at: Lobe, numerator: Exponents, denominator: Exponents) -> tupl
     return nested_horner(above, factors), nested_horner(below, factors)
 
 
-def terms_of(c: Sequence[Any], numerator: Exponents, denominator: Exponents) -> tuple[Terms, Terms]:
+def terms_of(c: Any, numerator: Exponents, denominator: Exponents) -> tuple[Terms, Terms]:
     """Return the terms of R/σ and Q/σ³: the exponents of p, a, μ and α, and the coefficients."""
     split = len(numerator)
     free = (c[split + k] for k in range(len(denominator) - 1))
