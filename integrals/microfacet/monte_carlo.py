@@ -14,6 +14,9 @@ from shading.microfacet.ggx import Roughness, projected_roughness, widths
 from shading.sggx import reflect, visible_normal
 from shading.types import Scalar, Vector
 
+# Between this and 0, E changes by 1e-10 at most.
+_LEAST_MU = 1e-12
+
 
 def albedo_by_sampling(
     view: Vector,
@@ -47,11 +50,15 @@ def directional_albedo_by_sampling(
     mu: Scalar,
     alpha: Scalar,
     *,
+    fresnel: Fresnel = white,
     samples: int = 1 << 16,
     sequence: Sequence = "random",
     seed: int = 0,
 ) -> Estimate:
-    """Return E(μ, α) of an isotropic surface and its standard error, for μ > 0."""
-    mu = jnp.asarray(mu, dtype=float)
+    """Return the albedo of an isotropic surface and its standard error; E(μ, α) by default."""
+    # At μ = 0 a light on the horizon would count 0/0. The albedo is continuous there.
+    mu = jnp.maximum(jnp.asarray(mu, dtype=float), _LEAST_MU)
     view = jnp.stack([jnp.sqrt((1 - mu) * (1 + mu)), jnp.zeros(()), mu])
-    return albedo_by_sampling(view, alpha, samples=samples, sequence=sequence, seed=seed)
+    return albedo_by_sampling(
+        view, alpha, fresnel=fresnel, samples=samples, sequence=sequence, seed=seed
+    )

@@ -10,6 +10,7 @@ import numpy as np
 from integrals.microfacet.average_albedo import average_albedo
 from integrals.microfacet.directional_albedo import directional_albedo
 from integrals.microfacet.fresnel_split import fresnel_split
+from integrals.microfacet.monte_carlo import directional_albedo_by_sampling
 from integrals.reference import Axis, Estimate, Reference, leg
 from integrals.sampling import Sampling
 
@@ -47,6 +48,16 @@ def _bias(mu, alpha) -> Estimate:
     return fresnel_split(mu, alpha, nodes=_NODES, azimuths=_AZIMUTHS).offset
 
 
+@leg(*AXES)
+def _scale_by_sampling(mu, alpha, **options) -> Estimate:
+    return directional_albedo_by_sampling(mu, alpha, fresnel=lambda c: 1 - (1 - c) ** 5, **options)
+
+
+@leg(*AXES)
+def _bias_by_sampling(mu, alpha, **options) -> Estimate:
+    return directional_albedo_by_sampling(mu, alpha, fresnel=lambda c: (1 - c) ** 5, **options)
+
+
 @leg(ALPHA)
 def _average(alpha) -> Estimate:
     """Evaluate E_avg by the one-dimensional integral of elementary functions."""
@@ -64,7 +75,14 @@ def near_the_dip(points: np.ndarray) -> np.ndarray:
     return np.stack([np.minimum(points[:, 1] * ratio, 1.0), points[:, 1]], axis=1)
 
 
-def _split(name: str, symbol: str, meaning: str, definition: str, quadrature: Callable):
+def _split(
+    name: str,
+    symbol: str,
+    meaning: str,
+    definition: str,
+    quadrature: Callable,
+    monte_carlo: Callable,
+) -> Reference:
     return Reference(
         name=name,
         symbol=symbol,
@@ -75,6 +93,7 @@ def _split(name: str, symbol: str, meaning: str, definition: str, quadrature: Ca
             fitted=10, checked=11, judged=12, climbs=False, extra=near_the_dip, verified=1 << 12
         ),
         quadrature=quadrature,
+        monte_carlo=monte_carlo,
         batch=256,
     )
 
@@ -87,6 +106,7 @@ GGX_DIRECTIONAL_ALBEDO = Reference(
     axes=AXES,
     sampling=Sampling(fitted=12, checked=14, judged=14, extra=near_the_dip, verified=1 << 14),
     quadrature=_directional,
+    monte_carlo=leg(*AXES)(directional_albedo_by_sampling),
     batch=1024,
 )
 GGX_SCALE = _split(
@@ -95,6 +115,7 @@ GGX_SCALE = _split(
     "factor of F₀ in the albedo F₀ A + B of GGX with Schlick's Fresnel reflectance",
     "∫_Ω f(v, l) (1 − (1 − v·h)⁵) (l·n) dω_l",
     _scale,
+    _scale_by_sampling,
 )
 GGX_BIAS = _split(
     "ggx-bias",
@@ -102,6 +123,7 @@ GGX_BIAS = _split(
     "what does not depend on F₀ in the albedo F₀ A + B of GGX with Schlick's Fresnel reflectance",
     "∫_Ω f(v, l) (1 − v·h)⁵ (l·n) dω_l",
     _bias,
+    _bias_by_sampling,
 )
 GGX_AVERAGE_ALBEDO = Reference(
     name="ggx-average-albedo",
