@@ -1,11 +1,14 @@
 """The pictures of GGX microfacets: the missing energy, what returns it, and a white furnace."""
 
+from collections.abc import Sequence
 from functools import partial
 
 import jax
 import numpy as np
 from matplotlib.figure import Figure
 
+from coefficients.catalogue import resolve
+from coefficients.exported_code import exported_values
 from integrals.microfacet import average_albedo, directional_albedo, fresnel_split, smooth_limit
 from integrals.microfacet.random_walk import schlick, walk
 from shadefit.figures.picture import Picture
@@ -29,6 +32,9 @@ _SPHERE_ALPHAS = (0.1, 0.3, 0.6, 1.0)
 _GOLD = (1.0, 0.77, 0.34)
 _SPHERE = 150
 _FURNACE = 0.6
+# The albedo of a sphere depends on μ only: it is interpolated between these, graded at the rim.
+_RIM = np.linspace(0, 1, 129) ** 2
+_BEST_ALBEDO, _BEST_AVERAGE = "best/ggx-directional-albedo-57", "best/ggx-average-albedo-18"
 
 
 def microfacet_pictures() -> dict[str, Picture]:
@@ -54,9 +60,11 @@ def microfacet_pictures() -> dict[str, Picture]:
         "ggx-furnace": Picture(
             "GGX in a furnace",
             "Spheres of rough metal in an environment that is equally bright everywhere. A white "
-            "metal should be invisible. First row: white, single scattering only. Second row: "
-            "white, with f_ms of Kulla and Conty by the exact E and E_avg. Third and fourth row: "
-            "gold, single scattering only, and with f_ms and the color ⅔.",
+            "metal should be invisible. First row: white, single scattering only. Second to "
+            "fourth row: white, with f_ms of Kulla and Conty by the exact E and E_avg, by the "
+            f"constants of MaterialX (with the average of their E), and by {_BEST_ALBEDO} and "
+            f"{_BEST_AVERAGE}. Fifth and sixth row: gold, single scattering only, and with the "
+            "exact f_ms and the color ⅔.",
             draw_furnace,
         ),
         "ggx-metal": Picture(
@@ -140,10 +148,12 @@ def draw_furnace() -> Figure:
     rows = {
         "white, single": partial(_sphere, (1.0,) * 3, False),
         "white, all": partial(_sphere, (1.0,) * 3, True),
+        "MaterialX": partial(_sphere_of_table, "published/ggx-directional-albedo", None),
+        "best tables": partial(_sphere_of_table, _BEST_ALBEDO, _BEST_AVERAGE),
         "gold, single": partial(_sphere, _GOLD, False),
         "gold, all": partial(_sphere, _GOLD, True),
     }
-    figure = Figure(figsize=(6.4, 6.6), layout="constrained", facecolor="white")
+    figure = Figure(figsize=(6.4, 9.6), layout="constrained", facecolor="white")
     panels = figure.subplots(len(rows), len(_SPHERE_ALPHAS))
     for line, (name, draw) in zip(panels, rows.items(), strict=True):
         for panel, alpha in zip(line, _SPHERE_ALPHAS, strict=True):
@@ -159,21 +169,48 @@ def draw_furnace() -> Figure:
 
 def _sphere(reflectances, multiple: bool, alpha: float) -> np.ndarray:
     """Return an sRGB image (n, n, 3) of a sphere, seen from far away in a furnace."""
-    x = (np.arange(_SPHERE) + 0.5) / _SPHERE * 2.3 - 1.15
-    radius2 = x[:, None] ** 2 + x**2
-    cosine = np.sqrt(np.clip(1 - radius2, 0, 1))
-    # The albedo depends on μ only: take it from a fine table, graded at the rim.
-    nodes = np.linspace(0, 1, 129) ** 2
-    scale, offset = (np.asarray(each.value) for each in _SPLIT(nodes, alpha))
+    scale, offset = (np.asarray(each.value) for each in _SPLIT(_RIM, alpha))
     average = float(average_albedo(alpha).value)
-    image = np.empty((_SPHERE, _SPHERE, 3))
-    for channel, f0 in enumerate(reflectances):
+    channels = []
+    for f0 in reflectances:
         values = f0 * scale + offset
         if multiple:
             color = float(color_of_walk((1 + 20 * f0) / 21, average))
             values = values + color * (1 - scale - offset)
-        inside = np.interp(cosine, nodes, values)
-        image[..., channel] = _FURNACE * np.where(radius2 < 1, inside, 1.0)
+        channels.append(values)
+    return _image(channels)
+
+
+def _sphere_of_table(albedo: str, average: str | None, alpha: float) -> np.ndarray:
+    """Return the image of a white sphere whose f_ms has the E and E_avg of tables.
+
+    Without a table of E_avg, it is the average of the table's E.
+    """
+
+    def fitted(mu: np.ndarray) -> np.ndarray:
+        return _values(albedo, np.stack([mu, np.full_like(mu, alpha)], axis=1))
+
+    # In the root of μ, the dip at μ ≈ α is wide.
+    roots, weights = np.polynomial.legendre.leggauss(64)
+    roots = (roots + 1) / 2
+    of_fitted = float(np.sum(2 * weights * roots**3 * fitted(roots**2)))
+    by_table = of_fitted if average is None else float(_values(average, np.array([[alpha]]))[0])
+    single = np.sum([np.asarray(each.value) for each in _SPLIT(_RIM, alpha)], axis=0)
+    values = single + (1 - fitted(_RIM)) * (1 - of_fitted) / (1 - by_table)
+    return _image([values] * 3)
+
+
+def _values(name: str, points: np.ndarray) -> np.ndarray:
+    return exported_values(resolve(name), points)
+
+
+def _image(channels: Sequence[np.ndarray]) -> np.ndarray:
+    """Return an sRGB image (n, n, 3); each channel has the radiances for the cosines `_RIM`."""
+    x = (np.arange(_SPHERE) + 0.5) / _SPHERE * 2.3 - 1.15
+    radius2 = x[:, None] ** 2 + x**2
+    cosine = np.sqrt(np.clip(1 - radius2, 0, 1))
+    inside = np.stack([np.interp(cosine, _RIM, each) for each in channels], axis=-1)
+    image = _FURNACE * np.where(radius2[..., None] < 1, inside, 1.0)
     return np.where(image < 0.0031308, 12.92 * image, 1.055 * image ** (1 / 2.4) - 0.055)
 
 
