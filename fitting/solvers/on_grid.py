@@ -67,7 +67,7 @@ class OnGrid:
         grid = self.make_grid(form.axes, count)
         progress(f"exact {form.reference.symbol} on the grid")
         estimates = form.reference.estimates(grid.points)
-        progress(f"coefficients of {form.equation}")
+        progress(f"coefficients of {form.printed or form.name}")
         if self.solve is not None:
             coefficients, solver = self.solve(grid, estimates.value), self.description or MARQUARDT
         else:

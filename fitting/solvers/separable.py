@@ -69,7 +69,7 @@ class Separable:
         grid = trapezoid_grid(form.axes[: form.shared], count)
         progress(f"exact {reference.symbol} and the best combination in every cell")
         fits = self.node_fits(form, grid, measure)
-        progress(f"{form.size} coefficients of {form.equation} together")
+        progress(f"{form.size} coefficients of {form.printed or form.name} together")
         coefficients = self._jointly(grid, fits)
         progress("errors and certificate")
         fitted = form.fitted(coefficients)

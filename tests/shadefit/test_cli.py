@@ -37,6 +37,10 @@ POINTS = {
     "q": ["--density", "0.2"],
     "r": ["--alpha", "0.35", "--theta-f", "45deg"],
     "velvet": ["--asymmetry", "-0.5"],
+    **dict.fromkeys(
+        ("ggx-directional-albedo", "ggx-scale", "ggx-bias"), ["--mu", "0.3", "--alpha", "0.4"]
+    ),
+    "ggx-average-albedo": ["--alpha", "0.4"],
 }
 
 

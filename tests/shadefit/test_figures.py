@@ -348,8 +348,8 @@ def main_status(*arguments):
     return stopped.value.code or 0
 
 
-def test_pictures_are_declared_for_the_quantities_of_the_package():
-    assert set(DRAWN) == set(problems().values())
+def test_pictures_are_declared_for_the_quantities_of_the_fuzz_brdf():
+    assert set(DRAWN) == {each for each in problems().values() if each.topic == "fuzz"}
 
 
 @pytest.mark.parametrize("axes", [(X,), (X, ANGLE)])

@@ -66,7 +66,7 @@ def test_without_colours_and_on_a_dumb_terminal():
 
 
 def test_an_old_encoding_in_a_terminal():
-    output, lines = shown("list", width=80, PYTHONIOENCODING="ascii")
+    output, lines = shown("compare", "q", width=80, PYTHONIOENCODING="ascii")
     assert output.isascii()
     assert any(set(line) == {"-"} for line in lines)
 
