@@ -39,6 +39,7 @@ def calls_of(name, layout="array"):
     ]
 
 
+@pytest.mark.slow
 def test_every_table_of_p_s_and_its_closed_form_have_the_same_interface():
     expected = calls_of("published/ps")
     for name in [*OF_PS, "exact/ps"]:

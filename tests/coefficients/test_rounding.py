@@ -54,6 +54,7 @@ def test_a_published_table_has_no_certificates_to_write():
         with_rounding(found)
 
 
+@pytest.mark.slow
 def test_long_code_is_not_proven_but_measured():
     found = certify_rounding(resolve("exact/g"))
     assert found.state == "not proven" and found.found == {"ieee": None, "vulkan": None}

@@ -358,7 +358,7 @@ def read_or_refuse(text: str) -> Table | None:
         return None
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     which=st.sampled_from(sorted(DATA)),
     edits=st.lists(

@@ -43,6 +43,7 @@ def test_a_step_is_a_product_and_two_sums():
     assert operations(form, np.random.default_rng(3).normal(size=11)) == 3 * 10 + 1
 
 
+@pytest.mark.slow
 def test_a_high_degree_reaches_rounding():
     found = fit(chebyshev(LINE, 40, name="c"), nodes=65)
     assert found.solver == "QR"

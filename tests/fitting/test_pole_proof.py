@@ -81,7 +81,7 @@ def test_a_pole_in_any_row_of_p_s_is_found(row):
 SLOPES = st.floats(0.01, 1.5) | st.floats(-1.5, -0.01)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.tuples(SLOPES, SLOPES, SLOPES))
 def test_certified_denominators_are_positive_and_refused_ones_nearly_vanish(slopes):
     fitted = rational_r(*slopes)

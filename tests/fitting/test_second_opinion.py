@@ -19,7 +19,7 @@ def made(goal: Goal = LEAST_SQUARES, nodes: int | None = None):
     return fit(QUOTIENT, goal, nodes)
 
 
-@pytest.mark.parametrize("goal", [Goal(), Goal("linf")])
+@pytest.mark.parametrize("goal", [pytest.param(Goal(), marks=pytest.mark.slow), Goal("linf")])
 def test_jaxopt_ends_in_the_same_place(goal):
     found = made(goal)
     opinion = second_opinion(QUOTIENT, goal, found)
@@ -31,6 +31,7 @@ def test_jaxopt_ends_in_the_same_place(goal):
     assert opinion.tried > 4
 
 
+@pytest.mark.slow
 def test_a_fit_on_a_grid_has_a_second_opinion_too():
     found = made(nodes=9)
     opinion = second_opinion(QUOTIENT, Goal(), found)

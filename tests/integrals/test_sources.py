@@ -212,6 +212,7 @@ def albedo():
     return make_reference(source, name="albedo", axes=GGX_AXES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.1, 0.5, 1.0])
 def test_the_albedo_of_a_smooth_surface(mu):
     points = np.array([[mu, 0.1]])
@@ -237,6 +238,7 @@ def test_hemisphere_and_sphere_integrate_a_tilted_lobe():
         assert error[0] < 1e-11
 
 
+@pytest.mark.slow
 def test_breaks_at_the_horizon_of_a_map():
     """With the sphere's coordinates for a clamped cosine, a break makes the rule exact."""
 
@@ -248,6 +250,7 @@ def test_breaks_at_the_horizon_of_a_map():
     assert np.all(error < 1e-9)
 
 
+@pytest.mark.slow
 def test_importance_of_the_users_own():
     def near_pole(x, y, k):
         """Directions with the density ∝ e^(k cos θ), k in the axis."""
@@ -339,6 +342,7 @@ def test_derivatives_equal_finite_differences(name):
     np.testing.assert_allclose(second, steps, rtol=1e-4, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_derivatives_of_an_integral_over_directions():
     value = albedo().value
     slope = jax.jit(jax.grad(value, argnums=(0, 1)))(0.5, 0.4)

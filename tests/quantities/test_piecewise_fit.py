@@ -31,6 +31,7 @@ def test_the_total_variation_is_ten_times_smaller_than_with_uniform_knots(name):
     np.testing.assert_allclose(mass(fit.profile), 1, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_masking_of_ggx_is_that_of_its_formula():
     target = analytic_ndf("ggx:0.1")
     fit = fit_ndf(target, 32)

@@ -37,9 +37,9 @@ POINTS = {
     "q": ["--density", "0.2"],
     "r": ["--alpha", "0.35", "--theta-f", "45deg"],
     "velvet": ["--asymmetry", "-0.5"],
-    **dict.fromkeys(
-        ("ggx-directional-albedo", "ggx-scale", "ggx-bias"), ["--mu", "0.3", "--alpha", "0.4"]
-    ),
+    "ggx-directional-albedo": ["--mu", "0.3", "--alpha", "0.4"],
+    "ggx-scale": ["--mu", "0.3", "--alpha", "0.4"],
+    "ggx-bias": ["--mu", "0.3", "--alpha", "0.4"],
     "ggx-average-albedo": ["--alpha", "0.4"],
 }
 
