@@ -8,7 +8,14 @@ from coefficients.catalogue import entries
 from coefficients.exported_code import exported_values
 from quantities import Problem
 from shadefit.figures.style import COLOURS, DASHES
-from shadefit.figures.values import axis_hints, exact, hints_of, kind_label, points_along
+from shadefit.figures.values import (
+    axis_hints,
+    exact,
+    hints_of,
+    kind_label,
+    math_symbol,
+    points_along,
+)
 
 _NODES = 201
 # The free part above the largest value, as a fraction of the range of the values.
@@ -60,7 +67,7 @@ def draw_curves(owner: Problem) -> Figure:
             )
         if kind == "best":
             ends[entry.name] = max(float(np.abs(error).max()), _LEAST)
-    panels[0].set(ylabel=hints.value_label or f"${owner.symbol}$")
+    panels[0].set(ylabel=hints.value_label or math_symbol(owner))
     if hints.values is not None:
         low, high = hints.values
         panels[0].set(ylim=(low, high + _HEADROOM * (high - low)))

@@ -13,8 +13,9 @@ from coefficients.catalogue import resolve
 from coefficients.frontier import Mark, best_so_far, marks
 from quantities import Problem, problems
 from shadefit.figures.style import COLOURS, KINDS, MARKERS
-from shadefit.figures.values import error_text, hints_of
+from shadefit.figures.values import error_text, hints_of, math_symbol
 
+_GGX = "microfacet"
 # The marker of the published table is large and hollow, so that a refit at the same place is seen
 # inside it.
 _SIZES = {"exact": 110, "published": 90}
@@ -41,18 +42,23 @@ _OFFSETS = tuple(
 )
 
 
-def drawn_quantities() -> list[Problem]:
-    """List the quantities that have a panel: those with two marks or more to compare."""
-    return [owner for owner in problems().values() if len(marks(owner)) > 1]
+def drawn_quantities(ggx: bool) -> list[Problem]:
+    """List the quantities that have a panel: those with two marks or more to compare.
+
+    They are those of GGX, or all others.
+    """
+    owners = [owner for owner in problems().values() if (owner.topic == _GGX) == ggx]
+    return [owner for owner in owners if len(marks(owner)) > 1]
 
 
-def draw_frontier() -> Figure:
+def draw_frontier(ggx: bool = False) -> Figure:
     """Draw the largest error of every table against its operations, one panel per quantity.
 
+    The quantities are those of GGX, or all others.
     A closed form that costs far more than every table is written below the panel, because it would
     squeeze the tables.
     """
-    drawn = drawn_quantities()
+    drawn = drawn_quantities(ggx)
     rows = -(-len(drawn) // 2)
     figure = Figure(figsize=(9.6, 4.1 * rows + 0.4), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).ravel()
@@ -113,7 +119,7 @@ def _panel(axes: Axes, owner: Problem, every: tuple[Mark, ...]) -> None:
         if mark not in every:
             error = error_text(mark.largest)
             label += f"\n(★ {mark.name}: {mark.operations:,} operations, error {error})"
-    axes.set(yscale="log", title=f"${owner.symbol}$", xlabel=label, ylabel="largest error")
+    axes.set(yscale="log", title=math_symbol(owner), xlabel=label, ylabel="largest error")
     axes.margins(x=0.12, y=0.1)
     costs = [mark.operations for mark in every]
     if max(costs) > _WIDE * min(costs):

@@ -26,6 +26,12 @@ _FRONTIER = Picture(
     draw_frontier,
 )
 
+_GGX_FRONTIER = Picture(
+    "Cost against error: GGX",
+    "The same as the picture before it, for the quantities of GGX: E, A, B and E_avg.",
+    partial(draw_frontier, ggx=True),
+)
+
 
 def pictures() -> dict[str, Picture]:
     """Return all pictures, by name.
@@ -43,7 +49,7 @@ def pictures() -> dict[str, Picture]:
         **sampling_pictures(),
         **ndf_pictures(),
     }
-    return {**topics, **others, "frontier": _FRONTIER}
+    return {**topics, **others, "frontier": _FRONTIER, "ggx-frontier": _GGX_FRONTIER}
 
 
 def errors_picture(owner: Problem) -> Picture:

@@ -22,6 +22,7 @@ from shadefit.figures.values import (
     error_text,
     hints_of,
     label_of,
+    math_symbol,
     mesh,
     points_along,
     round_up,
@@ -68,7 +69,7 @@ def draw_surfaces(owner: Problem, names: Sequence[str]) -> Figure:
         axes.set_title(title, y=0.97)
     bar = figure.add_axes((0.35, 0.13, 0.3, 0.025))
     scale = ScalarMappable(Normalize(*bounds), VALUES)
-    figure.colorbar(scale, cax=bar, orientation="horizontal", label=f"${owner.symbol}$")
+    figure.colorbar(scale, cax=bar, orientation="horizontal", label=math_symbol(owner))
     return figure
 
 
@@ -103,7 +104,7 @@ def draw_errors(owner: Problem) -> Figure:
         lines = panels[0].contour(x, y, truth, levels=8, colors="white", linewidths=0.7)
         panels[0].clabel(lines, fontsize=7.5)
     panels[0].set_title("exact\n")
-    figure.colorbar(shown, ax=panels[0], label=f"${owner.symbol}$", aspect=25)
+    figure.colorbar(shown, ax=panels[0], label=math_symbol(owner), aspect=25)
     for axes, table, values in zip(panels[1:], tables, columns, strict=False):
         signed = values - truth
         worst = float(np.abs(signed).max())

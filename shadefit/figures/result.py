@@ -7,7 +7,7 @@ from fitting import FittedForm, form_values
 from quantities import Problem
 from quantities.plot_hints import AxisHint
 from shadefit.figures.style import COLOURS, ERRORS, VALUES
-from shadefit.figures.values import axis_hints, mesh, points_along
+from shadefit.figures.values import axis_hints, math_symbol, mesh, points_along
 
 _NODES, _MAP_NODES = 401, 101
 
@@ -35,7 +35,7 @@ def draw_result(owner: Problem, fitted: FittedForm) -> Figure:
     largest = float(np.abs(error).max()) or 1.0
     grids = [line * hint.factor for line, hint in zip(lines, shown, strict=False)]
     pictures = (
-        (left, exact, f"exact ${owner.symbol}$", {"cmap": VALUES}),
+        (left, exact, f"exact {math_symbol(owner)}", {"cmap": VALUES}),
         (right, error, "form − exact", {"cmap": ERRORS, "vmin": -largest, "vmax": largest}),
     )
     for axes, values, title, options in pictures:
@@ -55,12 +55,12 @@ def draw_data(owner: Problem) -> Figure:
     x = data.points[:, 0] * hints[0].factor
     if len(hints) == 1:
         axes.scatter(x, data.values, s=12, color=COLOURS["exact"])
-        axes.set(xlabel=hints[0].shown_label, ylabel=f"${owner.symbol}$")
+        axes.set(xlabel=hints[0].shown_label, ylabel=math_symbol(owner))
         return figure
     y = data.points[:, 1] * hints[1].factor
     drawn = axes.scatter(x, y, c=data.values, s=12, cmap=VALUES)
     axes.set(xlabel=hints[0].shown_label, ylabel=hints[1].shown_label)
-    figure.colorbar(drawn, ax=axes, label=f"${owner.symbol}$")
+    figure.colorbar(drawn, ax=axes, label=math_symbol(owner))
     return figure
 
 
@@ -85,7 +85,7 @@ def _curve(owner: Problem, fitted: FittedForm, hint: AxisHint) -> Figure:
             if len(rows):
                 below.scatter(x[:, 0] * hint.factor, form_values(fitted, x) - y, **style)
     below.axhline(0, color=COLOURS["exact"], lw=0.8)
-    above.set(ylabel=f"${owner.symbol}$")
+    above.set(ylabel=math_symbol(owner))
     above.legend()
     below.set(xlabel=hint.shown_label, ylabel="form − exact" if data is None else "form − data")
     if hint.logarithmic:
@@ -101,7 +101,7 @@ def _scattered(owner: Problem, fitted: FittedForm) -> Figure:
     left, right = figure.subplots(1, 2, sharey=True)
     largest = float(np.abs(error).max()) or 1.0
     pictures = (
-        (left, data.values, f"data, ${owner.symbol}$", {"cmap": VALUES}),
+        (left, data.values, f"data, {math_symbol(owner)}", {"cmap": VALUES}),
         (right, error, "form − data", {"cmap": ERRORS, "vmin": -largest, "vmax": largest}),
     )
     x, y = data.points[:, 0] * first.factor, data.points[:, 1] * second.factor

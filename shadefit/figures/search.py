@@ -8,6 +8,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from coefficients.search import Found, Result
 from quantities import Problem
 from shadefit.figures.style import COLOURS, MARKERS, render
+from shadefit.figures.values import math_symbol
 
 _OTHERS = "#aaaaaa"
 
@@ -41,7 +42,7 @@ def _figure(owner: Problem, result: Result) -> Figure:
         axes.xaxis.set_minor_formatter(ScalarFormatter())
     if not wide:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set(xlabel="operations", ylabel="largest error", title=f"${owner.symbol}$")
+    axes.set(xlabel="operations", ylabel="largest error", title=math_symbol(owner))
     axes.grid(color="#e5e5e5", lw=0.6)
     axes.set_axisbelow(True)
     axes.legend()

@@ -1,5 +1,6 @@
 """What is drawn of a quantity: its hints, and exact and exported values on grids of points."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -86,6 +87,11 @@ def round_up(value: float, steps: Sequence[float] = (1.0, 2.0, 5.0, 10.0)) -> fl
         return 1e-9
     power = 10.0 ** np.floor(np.log10(value))
     return float(next(m * power for m in steps if m * power >= value))
+
+
+def math_symbol(owner: Problem) -> str:
+    """Return the symbol of a quantity as Matplotlib's mathematical text."""
+    return "$" + re.sub(r"_(\w{2,})", r"_{\1}", owner.symbol) + "$"
 
 
 def error_text(value: float) -> str:
