@@ -441,7 +441,7 @@ def test_committed_pictures_are_small_and_can_be_read():
         png = (DOCS / "figures" / f"{name}.png").read_bytes()
         width, height = struct.unpack(">II", png[16:24])
         assert 500 <= width <= 1300
-        assert 350 <= height <= 1700
+        assert 300 <= height <= 1700
         svg = (DOCS / "figures" / f"{name}.svg").read_bytes()
         ElementTree.fromstring(svg)
         total += len(png) + len(svg)
