@@ -126,7 +126,7 @@ def test_errors_are_measured_on_the_grid_of_the_fit():
     assert list(found.on_grid.where.values()) == found.grid.points[place].tolist()
     assert (found.on_grid.points, found.inner, found.measure) == (81, 0, "uniform")
     assert found.reference_error == 1e-15
-    assert [len(stages), "f" in stages[0], PLANE.equation in stages[1]] == [3, True, True]
+    assert [len(stages), "f" in stages[0], PLANE.name in stages[1]] == [3, True, True]
 
 
 def test_a_solver_of_ones_own_is_given_the_grid_and_the_exact_values():
