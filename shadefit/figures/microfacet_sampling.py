@@ -82,7 +82,7 @@ def draw_caps() -> Figure:
     return figure
 
 
-def _draw_cap(axes: Axes, alphas: np.ndarray, theta: float, phi: float) -> None:
+def _draw_cap(axes: Axes, alphas: np.ndarray, theta: int, phi: int) -> None:
     view, degrees = _view(theta, phi), np.linspace(-180, 180, _LONGITUDES)
     horizon = jax.vmap(horizon_height, (None, None, 0))(view, alphas, np.radians(degrees))
     given, areas = components(view, alphas), projected_areas(view, alphas)
@@ -139,7 +139,7 @@ def _row(view, alphas):
     return rejected, list(variances(view, alphas, moments(view, alphas)))
 
 
-def _view(theta: float, phi: float) -> np.ndarray:
+def _view(theta: int, phi: int) -> np.ndarray:
     theta, phi = np.radians([theta, phi])
     return np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
 
@@ -150,5 +150,5 @@ def _roughness(alpha_x: float, alpha_y: float) -> str:
     return f"αx = {alpha_x:g}, αy = {alpha_y:g}"
 
 
-def _setting(alpha_x: float, alpha_y: float, theta: float, phi: float) -> str:
+def _setting(alpha_x: float, alpha_y: float, theta: int, phi: int) -> str:
     return f"{_roughness(alpha_x, alpha_y)},  {theta}°" + (f", φ = {phi}°" if phi else "")

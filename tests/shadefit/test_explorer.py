@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import subprocess
+import tempfile
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
@@ -118,10 +119,13 @@ def in_node(owners, points, main=_MAIN):
         *(model, main),
     ]
     given = json.dumps({name: rows.tolist() for name, rows in points.items()})
-    script = "\n".join(parts)
-    done = subprocess.run(
-        [NODE, "-e", script], input=given, capture_output=True, text=True, check=True, timeout=60
-    )
+    with tempfile.TemporaryDirectory() as folder:
+        # The script of all tables is too long for a command line.
+        path = Path(folder) / "page.js"
+        path.write_text("\n".join(parts), encoding="utf-8")
+        done = subprocess.run(
+            [NODE, str(path)], input=given, capture_output=True, text=True, check=True, timeout=60
+        )
     return json.loads(done.stdout)
 
 
