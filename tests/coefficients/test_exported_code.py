@@ -110,7 +110,14 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "key", "precision"), CASES)
+# The forms of these have no operation that the others lack.
+_SLOW = {"q": [pytest.mark.slow], "velvet": [pytest.mark.slow]}
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "precision"),
+    [pytest.param(*case, marks=_SLOW.get(case[0], [])) for case in CASES],
+)
 def test_every_language_passes_or_is_not_checked(name, key, precision):
     result = check(trial(name, precision), key)
     if result.status == "not checked":

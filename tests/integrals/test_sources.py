@@ -115,6 +115,7 @@ def test_the_error_in_two_variables_is_never_understated(name):
     assert_honest(single(quadrature(known.integrand, [(0, 1), (0, 1)]), PLACE), points, known)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variables", some_slow([3, 4], [4]))
 def test_three_and_four_variables(variables):
     def integrand(*values):
@@ -267,6 +268,7 @@ def test_importance_of_the_users_own():
     assert np.all(error < 1e-11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("over", "integrand", "exact"),
     [
@@ -298,6 +300,7 @@ def test_infinite_ranges_and_ends_that_depend_on_axes(over, integrand, exact):
         np.testing.assert_allclose(slope, (exact(k + 1e-5) - exact(k - 1e-5)) / 2e-5, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_a_break_that_moves_gives_the_derivative_of_a_jump():
     jump = quadrature(
         lambda t, a: jnp.where(t < a, 2.0, t), [(0, 1)], breaks=(lambda a: a, 0.25, 7.0)
@@ -311,6 +314,7 @@ def test_a_break_that_moves_gives_the_derivative_of_a_jump():
     np.testing.assert_allclose(jax.vmap(jax.grad(reference.value))(at), 2 - at, rtol=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "over", some_slow([(-np.inf, np.inf), (0, np.inf), (-np.inf, 3)], [(0, np.inf), (-np.inf, 3)])
 )
