@@ -137,6 +137,7 @@ def test_options_become_words_of_the_command():
     assert words_of(CodeOptions()) == []
 
 
+@pytest.mark.slow
 def test_several_tables_are_one_file_with_a_header_each(few_points):
     listed = [resolve(name) for name in ("best/ps-11", "best/g-9", "q")]
     source = source_file(listed, "c", options=MATERIAL)

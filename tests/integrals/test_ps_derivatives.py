@@ -97,6 +97,7 @@ def test_first_derivatives_of_the_quadrature_equal_finite_differences():
     assert np.all(abs(miss) < DIFFERENCES / points[0] ** 2)
 
 
+@pytest.mark.slow
 def test_second_derivatives_are_finite_and_equal_finite_differences():
     resolved = np.concatenate([corners(0.15, 1.0)[:, ::3], awkward_points(4, 300, 0.15)], axis=1)
     points = np.concatenate([resolved, corners(1e-3, 0.5)[:, ::2]], axis=1)

@@ -145,6 +145,7 @@ def exact_fresnel_average(eta):
     return mp.quad(f, [0, mp.sqrt(eta * eta - 1), 1] if eta < 1.4 else [0, 1])
 
 
+@pytest.mark.slow
 def test_the_average_of_a_dielectric_fresnel_reflectance():
     source = quadrature(lambda t, eta: 4 * t**3 * reflectance(t * t, eta), over=[(0, 1)])
     eta = np.array([1.0, 1 + 1e-6, 1.001, 1.01, 1.1, 1.33, 1.5, 1.8, 2.4, 3.0])
@@ -384,6 +385,7 @@ def test_a_closed_form_states_its_rounding():
     assert np.isnan(stated(1.5).value)
 
 
+@pytest.mark.slow
 def test_sources_join_to_independent_legs():
     smooth = INTEGRALS["smooth"]
     exact = closed_form(lambda a: jnp.where(a > 0, jnp.expm1(a) / jnp.where(a > 0, a, 1), 1))

@@ -44,6 +44,7 @@ def test_it_is_in_the_report(run, tmp_path):
     assert "float SoftStep(float x, float y)" in page
 
 
+@pytest.mark.slow
 def test_it_goes_through_every_command(run, tmp_path):
     table = tmp_path / "soft.json"
     largest = {}
