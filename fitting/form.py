@@ -62,20 +62,20 @@ class Proofs:
       radicands and arguments of logarithms in the form's traced program.
     * `below`: takes the fitted form. If the number that it returns is positive, no value of the
       form is above the exact one. None: there is no such proof.
+    * `inputs`: maps a point of `axes` to the arguments of the second stage. None: `Form.inputs`.
     * `quotient`: takes the fitted form, and returns one with the same values that is a quotient of
       linear functions of its coefficients, and whose form contains this one. A lower bound of its
       largest error is one of this form's. None: there is no such form, or it is this one.
-    * `inputs`: maps a point of `axes` to the arguments of the second stage. None: `Form.inputs`.
     * `first_split`: the number of pieces into which branch and bound divides the first axes before
       it begins.
     """
 
     axes: tuple[Axis, ...] | None = None
-    inputs: Callable[..., tuple[Array, ...]] | None = None
     value: Callable[..., Array] | None = None
     margins: Callable[..., tuple[Array, ...]] | None = None
     positive: Callable[..., Array] | None = None
     below: Callable[["FittedForm"], float] | None = None
+    inputs: Callable[..., tuple[Array, ...]] | None = None
     quotient: Callable[["FittedForm"], "FittedForm"] | None = None
     first_split: tuple[int, ...] = ()
 

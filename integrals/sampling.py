@@ -34,9 +34,11 @@ class Sampling:
     If `climbs` is true, hill climbing starts at the worst points and looks for larger errors. This
     is not worth its time for a quantity that is smooth and expensive. Of such a quantity, a fit of
     the largest error still climbs, but tries at most `refined` points in a round; 0 stands for no
-    climbing. `measures` are the weights
-    that a fit may choose from, by name. `verified` is the largest number of points (not a
-    logarithm) at which exported code is compared with exact values. None means no limit.
+    climbing.
+
+    `measures` are the weights that a fit may choose from, by name. `verified` is the largest number
+    of points (not a logarithm) at which exported code is compared with exact values. None means no
+    limit.
     """
 
     fitted: int

@@ -10,7 +10,7 @@ from fitting.proofs.largest_error import printed
 from integrals.reference import Axis, box_of
 from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
 from programs.bounding.largest import LargestValue, Report, bound_largest
-from programs.bounding.rounding import joined, rounding_parts
+from programs.bounding.rounding import chained, rounding_parts
 from programs.bounding.rounding_model import RoundingModel
 from programs.functions import Function
 from programs.printing.lowering import lowered
@@ -82,7 +82,7 @@ def rounding_kernel(
     On a box it bounds the error for all arguments in the box. Raises ValueError as `bound_rounding`
     does.
     """
-    program = joined([trace(each) for each in functions])
+    program = chained([trace(each) for each in functions])
     sides = len(arguments.axes)
     if not np.isfinite(box_of(arguments.axes)).all():
         raise ValueError(f"{program.name}: a domain is infinite; allowed are finite ones")

@@ -1,7 +1,6 @@
 """Sums of exponentials of one axis, whose coefficients may depend on other axes."""
 
 import functools
-import itertools
 import math
 from typing import Any
 
@@ -11,9 +10,9 @@ import numpy as np
 from fitting.equation import equation_of
 from fitting.form import Form, Stage
 from fitting.shapes.monomial_sums import (
-    Exponents,
     coefficient_name,
     free_letter,
+    monomials,
     nested_horner,
     sum_text,
 )
@@ -59,7 +58,7 @@ def exponentials(
     b, c0 = free_letter("b", [*taken, f"{a}1"]), free_letter("c", [*taken, f"{a}1"])
     first = [f"{c0}0"] if constant else []
     parts = [*first, *(f"{letter}{k}" for k in range(1, terms + 1) for letter in (a, b))]
-    powers = _exponents(degree, len(others))
+    powers = monomials(degree, len(others), total=True)
     names = [
         coefficient_name(f"{part}_", each) if degree else part for part in parts for each in powers
     ]
@@ -73,17 +72,13 @@ def exponentials(
             for k in range(0, len(c), size)
         ]
         pairs = zip(parts[len(first) :: 2], parts[len(first) + 1 :: 2], strict=True)
-        terms = [size * jnp.exp(-rate * point[at]) for size, rate in pairs]
+        terms = [amplitude * jnp.exp(-rate * point[at]) for amplitude, rate in pairs]
         return functools.reduce(jnp.add, [*parts[: len(first)], *terms])
 
-    sums = (
-        [
-            f"{part} = {sum_text(dict(zip(powers, names[size * k :], strict=False)), others)}"
-            for k, part in enumerate(parts)
-        ]
-        if degree
-        else []
-    )
+    sums = [
+        f"{part} = {sum_text(dict(zip(powers, names[size * k :], strict=False)), others)}"
+        for k, part in enumerate(parts if degree else [])
+    ]
     written = [f"{a}{k}{two}·exp(−{b}{k}{two}·{axis.symbol})" for k in range(1, terms + 1)]
     text = " + ".join([*(f"{each}{two}" for each in first), *written])
     equation = equation_of(reference.symbol, text, sums)
@@ -95,12 +90,6 @@ def exponentials(
         # The polynomials are constants at first.
         starts = tuple(np.kron(start, np.eye(1, size)[0]) for start in starts)
     return Form(name, equation, reference, axes, names, (Stage(value),), starts=starts)
-
-
-def _exponents(degree: int, variables: int) -> tuple[Exponents, ...]:
-    """Return the exponents of all monomials up to a total degree, those of the constant first."""
-    every = itertools.product(range(degree + 1), repeat=variables)
-    return tuple(each for each in every if sum(each) <= degree)
 
 
 def _place(name: str, axes: tuple[Axis, ...], along: str, monotone: bool) -> int:

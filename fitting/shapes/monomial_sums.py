@@ -26,6 +26,11 @@ def powers(
         raise ValueError(f"powers({degree}, {variables}): allowed are 0 or more, and 1 or more")
     if variables == 1:
         return tuple(range(degree + 1))
+    return monomials(degree, variables, total)
+
+
+def monomials(degree: int, variables: int, total: bool) -> tuple[Exponents, ...]:
+    """Return what `powers` does, as tuples for any number of variables, even for none."""
     every = itertools.product(range(degree + 1), repeat=variables)
     return tuple(each for each in every if not total or sum(each) <= degree)
 

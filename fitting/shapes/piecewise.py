@@ -98,18 +98,14 @@ def _text(
     v = free_variable(taken)
     statements, row = [f"ramp({v}) = min(max({v}, 0), 1)"], free_letter("r", taken)
     values = names
-    for depth in range(len(axes) - 1, -1, -1):
-        size = len(places[depth])
-        texts = [
-            _line(values[k : k + size], places[depth], axes[depth])
-            for k in range(0, len(values), size)
-        ]
-        if depth == 0:
-            return texts[0], statements
-        shape = [len(each) for each in places[:depth]]
-        values = [coefficient_name(row, each) for each in np.ndindex(*shape)]
-        statements += [f"{left} = {text}" for left, text in zip(values, texts, strict=True)]
-    raise AssertionError("there is at least one axis")
+    for depth in range(len(axes) - 1, 0, -1):
+        size, shape = len(places[depth]), [len(each) for each in places[:depth]]
+        rows = [coefficient_name(row, each) for each in np.ndindex(*shape)]
+        for k, left in enumerate(rows):
+            text = _line(values[size * k : size * (k + 1)], places[depth], axes[depth])
+            statements.append(f"{left} = {text}")
+        values = rows
+    return _line(values, places[0], axes[0]), statements
 
 
 def _line(values: Sequence[str], places: list[float], axis: Axis) -> str:

@@ -30,13 +30,7 @@ class Partial(NamedTuple):
 
 def isotropic_mass(ndf: Profile) -> float:
     """Return c_iso of a profile that is linear in θ, by Eq. 5 as printed."""
-    a, b, left, right = _segments(ndf)
-    total = (
-        2 * (a * left + b) * np.cos(2 * left)
-        - 2 * (a * right + b) * np.cos(2 * right)
-        + a * (np.sin(2 * right) - np.sin(2 * left))
-    )
-    return float(np.pi / 4 * np.sum(total))
+    return float(np.sum(_masses(*_segments(ndf))))
 
 
 def partial_moment(ndf: Profile, upper: float = np.pi / 2) -> float:
@@ -131,12 +125,13 @@ def _gauss(ndf: Profile, theta_o: float, turn: float, nodes: int = 40) -> float:
 
 
 def _masses(a: np.ndarray, b: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return 2π ∫ (aθ + b) cos θ sin θ dθ between the ends of each segment, as in Eq. 5."""
     total = (
         2 * (a * left + b) * np.cos(2 * left)
         - 2 * (a * right + b) * np.cos(2 * right)
         + a * (np.sin(2 * right) - np.sin(2 * left))
     )
-    return 2 * np.pi / 8 * total
+    return np.pi / 4 * total
 
 
 def _segments(

@@ -42,7 +42,8 @@ def hidden_area(ndf: Profile | Blend, theta_o: Scalar, phi_o: Scalar = 0.0) -> A
         return hidden_area_quadrature(ndf, theta_o)
     x, y = weights(ndf)
     turn = jnp.cos(2 * jnp.asarray(phi_o))
-    return x * _profile_area(ndf.x, theta_o, turn) + y * _profile_area(ndf.y, theta_o, -turn)
+    along = hidden_area_quadrature(ndf.x, theta_o, turn)
+    return x * along + y * hidden_area_quadrature(ndf.y, theta_o, -turn)
 
 
 def smith_lambda(ndf: Profile | Blend, theta_o: Scalar, phi_o: Scalar = 0.0) -> Array:
@@ -71,9 +72,15 @@ def smith_g2(
     return jnp.where(below > 0, both / jnp.where(below > 0, below, 1.0), 0.0)
 
 
-def hidden_area_quadrature(ndf: Profile, theta_o: Scalar, *, nodes: int = 24) -> Array:
-    """Return H of a profile by `nodes` Gauss points between knots, to about 1e-14 relative."""
-    return _area(lambda theta: density(ndf, theta), ndf.knots, theta_o, jnp.zeros(()), nodes)
+def hidden_area_quadrature(
+    ndf: Profile, theta_o: Scalar, turn: Scalar = 0.0, *, nodes: int = 24
+) -> Array:
+    """Return H of a profile by `nodes` Gauss points between knots, to about 1e-14 relative.
+
+    With `turn` = cos 2φo it is H of the part 2cos²φ D(θ) of a blend, with −cos 2φo of 2sin²φ D(θ).
+    """
+    theta, weights = hidden_rule(theta_o, ndf.knots, turn, nodes=nodes)
+    return jnp.sum(weights * density(ndf, theta))
 
 
 def hidden_area_of(
@@ -85,16 +92,7 @@ def hidden_area_of(
     increase from 0 to π/2 and should be close to each other where it is steep. `nodes` is the
     number of Gauss points between two of them.
     """
-    return _area(of, jnp.asarray(breaks), theta_o, jnp.zeros(()), nodes)
-
-
-def _profile_area(ndf: Profile, theta_o: Scalar, turn: Array, nodes: int = 24) -> Array:
-    """Return H of the part 2cos²φ D(θ) of a blend. `turn` is cos 2φo, or its negative for sin²φ."""
-    return _area(lambda theta: density(ndf, theta), ndf.knots, theta_o, turn, nodes)
-
-
-def _area(of: Callable, breaks: Array, theta_o: Scalar, turn: Array, nodes: int) -> Array:
-    theta, weights = hidden_rule(theta_o, breaks, turn, nodes=nodes)
+    theta, weights = hidden_rule(theta_o, jnp.asarray(breaks), nodes=nodes)
     return jnp.sum(weights * of(theta))
 
 

@@ -37,7 +37,7 @@ _COMPARED = {"lt": "lt2({0}, {1})", "le": "le2({0}, {1})", "eq": "eq2({0}, {1})"
 _COMPARED |= {"gt": "lt2({1}, {0})", "ge": "le2({1}, {0})", "ne": "eq2({0}, {1})"}
 
 
-def joined(programs: Sequence[Program]) -> Program:
+def chained(programs: Sequence[Program]) -> Program:
     """Return one program of several: each takes the outputs of the one before it, then its own.
 
     The inputs are the own ones of each program, in order.

@@ -27,22 +27,11 @@ _GEOMETRY = ("alpha", "half_f", "half_u", "cos_phi")
 SIZES = ("alpha2", "kappa", "a", "b", "c")
 _LIGHT = ("alpha", *SIZES, "sigma2", "q", "p", "r", "m", "lam", "gap", "sin_f")
 
-# Values are cut to bounds that are proven for the whole domain: |a| ≤ 1, α² ≤ σ² ≤ 1, c ≤ r, p ≤ 1
-# (docs/range.md, docs/closed-form.md).
 _ENTRY = """
 static jet error_at(boxes *K, const jet *x) {
     jet g[6], s[2], f[3], root, gap;
     geometry(K, x[0], x[1], x[2], x[3], g);
-    g[2] = limited(g[2], -1, 1);
-    g[4] = limited(g[4], 0, 1);
-    sizes(K, g[0], g[1], g[2], g[3], g[4], s);
-    s[0] = limited(at_least_jet(s[0], g[0]), 0, 1);
-    s[1] = limited(at_least_jet(s[1], g[0]), 0, 1);
-    factors(K, g[0], g[1], g[2], g[3], g[4], s[0], s[1], f);
-    f[0] = limited(f[0], -1, 1);
-    f[1] = limited(at_least_jet(f[1], g[4]), 0, 2);
-    f[2] = limited(f[2], 0, 1);
-    cubic_root(K, f[0], f[1], f[2], g[0], &root, &gap);
+    cubic_at(K, g, s, f, &root, &gap);
     jet e[2];
     error(K, x[0], g[0], g[1], g[2], g[3], g[4], s[0], s[1], f[0], f[1], f[2], root, gap, g[5], e);
     if (RESULTS > 1) K->bad |= ~(-e[1].v.n > LEAST);

@@ -102,7 +102,7 @@ def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> 
 
     form = Form(
         name="quotient-q",
-        equation=f"Q = {STRUCTURES[structure]}, r a quotient of polynomials",
+        equation=f"{structure}, with a quotient of polynomials",
         reference=Q,
         axes=AXES,
         coefficient_names=[f"n{k}" for k in range(split)] + [f"d{k}" for k in range(poles)],

@@ -16,7 +16,7 @@ import numpy as np
 from jax import Array
 
 from fitting.form import Form, Proofs, Stage
-from fitting.shapes.monomial_sums import ONE, nested_horner
+from fitting.shapes.monomial_sums import ONE, nested_horner, sum_text
 from fitting.shapes.monomials import Exponents
 from integrals.microfacet.references import GGX_DIRECTIONAL_ALBEDO
 from integrals.reference import restricted
@@ -100,12 +100,7 @@ def _scaled(exponents: Exponents, coefficients: list, degree: int) -> Terms:
 
 def monomial_names(letter: str, exponents: Exponents, symbols: str = "μα") -> list[str]:
     """Return the names of coefficients, such as 'R: μα³'."""
-    return [f"{letter}: {_monomial(each, symbols)}" for each in exponents]
-
-
-def _monomial(exponents: tuple[int, int], symbols: str) -> str:
-    powers = {0: "", 1: "", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷"}
-    return "".join(f"{x}{powers[e]}" for x, e in zip(symbols, exponents, strict=True) if e) or "1"
+    return [f"{letter}: {sum_text({each: 1.0}, symbols).replace('·', '')}" for each in exponents]
 
 
 def _start(numerator: Exponents, denominator: Exponents) -> np.ndarray:

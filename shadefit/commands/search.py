@@ -178,7 +178,7 @@ def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, dra
         ["table", "form", "coefficients", "operations", "rms", "largest", "published / this"],
         [_row(each, result.published) for each in (*first, *(good or result.best), *result.exact)],
         f"Operations a call, of P_s a direction. {result.refused} forms refused: they have poles, "
-        f"or are not shown to have none.",
+        "or are not shown to have none.",
     )
     print(f"plot {drawn}.png")
 

@@ -316,7 +316,11 @@ def header_of(source: str, comment: str) -> str:
     return " ".join(line.removeprefix(comment).strip() for line in head)
 
 
-EVERY = [(key, kind) for key, spelled in LANGUAGES.items() for kind in spelled.types]
+EVERY = [
+    pytest.param(key, kind, marks=[] if kind == precision_of(key, None) else [pytest.mark.slow])
+    for key, spelled in LANGUAGES.items()
+    for kind in spelled.types
+]
 
 
 @pytest.mark.parametrize(("key", "precision"), EVERY)

@@ -39,7 +39,9 @@ def estimates(monkeypatch, name, sequence, samples):
     return np.asarray(values), np.asarray(errors)
 
 
-@pytest.mark.parametrize("name", POINTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n in ("r", "g") else ()) for n in POINTS]
+)
 def test_stated_errors_are_right_and_decrease_at_the_expected_rate(monkeypatch, name):
     rates, last, truth = {}, {}, float(jax.jit(REFERENCES[name].value)(*POINTS[name]))
     for sequence in ("random", "sobol"):

@@ -35,7 +35,14 @@ def evaluator(name, leg):
     return jax.jit(REFERENCES[name].legs[leg])
 
 
-@pytest.mark.parametrize(("name", "leg"), LEGS)
+# A and B take seconds, and E has the same rule.
+SLOW = ("ggx-scale", "ggx-bias")
+
+
+@pytest.mark.parametrize(
+    ("name", "leg"),
+    [pytest.param(*each, marks=pytest.mark.slow if each[0] in SLOW else ()) for each in LEGS],
+)
 def test_every_leg_gives_the_known_values_within_its_stated_error(name, leg):
     allowed = STANDARD_ERRORS if leg == "monte_carlo" else 1
     known_values = [known for known in KNOWN_VALUES if known.quantity == name]
@@ -278,8 +285,6 @@ def test_options_depend_on_the_points():
     assert traced == [0, 1]
 
 
-# A and B take seconds, and E has the same rule.
-SLOW = ("ggx-scale", "ggx-bias")
 NAMES = [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in REFERENCES]
 
 

@@ -114,7 +114,7 @@ def in_jax(function, rows):
     return np.stack(jax.tree.leaves(batched(*rows.T)), axis=1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(TREES, TREES)
 def test_a_program_computes_what_jax_computes(one, other):
     function = function_of(one, other)

@@ -122,7 +122,7 @@ def test_folding_for_code_is_not_changed():
     ]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(
     recipe=RECIPES,
     corner=st.tuples(*[st.floats(-3, 3)] * INPUTS),

@@ -60,13 +60,15 @@ CASES = [
 ]
 
 
-# CUDA's compiler takes seconds for each file.
-_SLOW = {"cuda": [pytest.mark.slow]}
+def _marks(key, precision, layout):
+    """Leave what is alike to the slow tests, and CUDA, whose compiler takes seconds for a file."""
+    alike = precision != "float" and key not in ("c", "hlsl")
+    return [pytest.mark.slow] if key == "cuda" or alike else []
 
 
 @pytest.mark.parametrize(
     ("key", "precision", "layout"),
-    [pytest.param(*case, marks=_SLOW.get(case[0], [])) for case in CASES],
+    [pytest.param(*case, marks=_marks(*case)) for case in CASES],
 )
 def test_a_structure_holds_what_the_first_function_computed(key, precision, layout):
     result = check(trial(Record("BlobState", layout, "k"), precision), key)

@@ -8,7 +8,7 @@ import pytest
 
 from programs.bounding.compiled import compile_kernel, compiler_missing
 from programs.bounding.largest import LargestValue, bound_largest
-from programs.bounding.rounding import joined, rounding_parts
+from programs.bounding.rounding import chained, rounding_parts
 from programs.bounding.rounding_model import IEEE, VULKAN, OperationError, RoundingModel
 from programs.functions import Function, Parameter
 from programs.program import Program, evaluate, interpret
@@ -148,7 +148,7 @@ def test_an_operation_without_a_known_error_is_refused():
             rounding_parts(program_of(call, 1), model, "", [False])
 
 
-def test_joined_programs_compute_one_after_the_other():
+def test_chained_programs_compute_one_after_the_other():
     first = trace(
         Function(
             "first", "", (Parameter("x", (0.0, 1.0)),), 2, "m", lambda x: (x * x + 0.5, jnp.exp(x))
@@ -164,7 +164,7 @@ def test_joined_programs_compute_one_after_the_other():
             lambda m, y: m[0] * y / (m[1] + y * y),
         )
     )
-    both, points = joined([first, second]), np.random.default_rng(1).random((50, 2))
+    both, points = chained([first, second]), np.random.default_rng(1).random((50, 2))
     between = evaluate(first, points[:, :1])
     apart = evaluate(second, np.concatenate([between, points[:, 1:]], axis=1))
     assert both.inputs == ("x", "y")

@@ -49,7 +49,7 @@ def test_the_rounding_of_code_is_proven_printed_and_written(capsys, tmp_path):
     assert 0 < rounding["measured"] < rounding["upper"]["ieee"] < rounding["upper"]["vulkan"] < 1e-6
     record = read(tmp_path / "q-4.json").certificates.float32_rounding
     assert record.ieee.upper == rounding["upper"]["ieee"]
-    status, out, _ = run(capsys, "certify", "exact/g", "--rounding")
+    status, out, _ = run(capsys, "certify", "exact/q", "--rounding")
     assert status == 1 and "not proven" in out
 
 

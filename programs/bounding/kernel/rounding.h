@@ -8,25 +8,29 @@
 #define LEAST_NORMAL 0x1p-126
 #define LARGEST_FLOAT 0x1.fffffep+127
 
+/* A jet times an interval that does not depend on the variables */
+static jet by_factor(jet a, iv factor) {
+    a.v = imul(a.v, factor);
+    a.c = imul(a.c, factor);
+    for (int k = 0; k < NVAR; ++k) a.g[k] = imul(a.g[k], factor);
+    return a;
+}
 /* The value after rounding, wrong by at most `part` of it and by `absolute`. The value may be as
    large as float32 holds. */
-static jet rounded(boxes *K, jet x, double part, double absolute) {
-    iv factor = {all(part - 1), all(1 + part)}, apart = between(-absolute, absolute);
+static jet rounded_by(boxes *K, jet x, V part, double absolute) {
+    iv apart = between(-absolute, absolute);
     K->bad |= ~within(x.v, -LARGEST_FLOAT * 0.99, LARGEST_FLOAT * 0.99);
-    x.v = iadd(imul(x.v, factor), apart);
-    x.c = iadd(imul(x.c, factor), apart);
-    for (int k = 0; k < NVAR; ++k) x.g[k] = imul(x.g[k], factor);
+    x = by_factor(x, (iv){part - 1, 1 + part});
+    x.v = iadd(x.v, apart);
+    x.c = iadd(x.c, apart);
     return x;
+}
+static jet rounded(boxes *K, jet x, double part, double absolute) {
+    return rounded_by(K, x, all(part), absolute);
 }
 /* The same where the error grows with the magnitude of the argument: part + more |argument| */
 static jet rounded_more(boxes *K, jet x, double part, double absolute, double more, jet argument) {
-    V most = largest(iabs(argument.v)) * more + part;
-    iv factor = {most - 1, 1 + most}, apart = between(-absolute, absolute);
-    K->bad |= ~within(x.v, -LARGEST_FLOAT * 0.99, LARGEST_FLOAT * 0.99);
-    x.v = iadd(imul(x.v, factor), apart);
-    x.c = iadd(imul(x.c, factor), apart);
-    for (int k = 0; k < NVAR; ++k) x.g[k] = imul(x.g[k], factor);
-    return x;
+    return rounded_by(K, x, largest(iabs(argument.v)) * more + part, absolute);
 }
 /* A constant and the float32 number that stands for it */
 static jet inexact(boxes *K UNUSED, double lower, double upper) {
@@ -39,11 +43,7 @@ static jet inexact(boxes *K UNUSED, double lower, double upper) {
    does not decide which one that is, it is a part of it between none and all. */
 static jet passed_on(jet a, M all_of_it, M nothing) {
     V zero = all(0), one = all(1);
-    iv part = {pick(all_of_it, -one, zero), pick(nothing & ~all_of_it, zero, one)};
-    a.v = imul(a.v, part);
-    a.c = imul(a.c, part);
-    for (int k = 0; k < NVAR; ++k) a.g[k] = imul(a.g[k], part);
-    return a;
+    return by_factor(a, (iv){pick(all_of_it, -one, zero), pick(nothing & ~all_of_it, zero, one)});
 }
 INLINE jet to_larger2(boxes *K UNUSED, jet d, jet a, jet b) {
     return passed_on(d, -a.v.n >= b.v.h, -b.v.n >= a.v.h);
@@ -52,11 +52,7 @@ INLINE jet to_smaller2(boxes *K UNUSED, jet d, jet a, jet b) {
     return passed_on(d, a.v.h <= -b.v.n, b.v.h <= -a.v.n);
 }
 INLINE jet with_sign2(boxes *K UNUSED, jet d, jet a) {
-    iv sign = {pick(a.v.n <= 0, all(-1), all(1)), pick(a.v.h < 0, all(-1), all(1))};
-    d.v = imul(d.v, sign);
-    d.c = imul(d.c, sign);
-    for (int k = 0; k < NVAR; ++k) d.g[k] = imul(d.g[k], sign);
-    return d;
+    return by_factor(d, (iv){pick(a.v.n <= 0, all(-1), all(1)), pick(a.v.h < 0, all(-1), all(1))});
 }
 /* Add a bound to an error. */
 static jet wider(jet e, V more) {

@@ -4,8 +4,8 @@
    into panels with the same rule; phi has the midpoint rule. What the rule leaves out is bounded in
    Python (r_bounds.py). Here only rounding matters: everything is an interval.
 
-   This file follows the printed functions `sizes`, `factors` and `complement`, and cubic_root.h. NVAR
-   is 0: there are no slopes. */
+   This file follows the printed function `complement` and cubic_root.h. NVAR is 0: there are no
+   slopes. */
 #include <fenv.h>
 #define MOST_AZIMUTHS 4096
 
@@ -25,17 +25,10 @@ static iv goes_up(boxes *K, iv alpha2, iv kappa, iv b, iv c, iv sines, iv cos_ph
     jet j[5], s[2], f[3], root, gap;
     j[0] = constant(alpha2);
     j[1] = constant(kappa);
-    j[2] = limited(constant(iadd(imul(sines, cos_phi), imul(b, c))), -1, 1);
+    j[2] = constant(iadd(imul(sines, cos_phi), imul(b, c)));
     j[3] = constant(b);
-    j[4] = limited(constant(c), 0, 1);
-    sizes(K, j[0], j[1], j[2], j[3], j[4], s);
-    s[0] = limited(at_least_jet(s[0], j[0]), 0, 1);
-    s[1] = limited(at_least_jet(s[1], j[0]), 0, 1);
-    factors(K, j[0], j[1], j[2], j[3], j[4], s[0], s[1], f);
-    f[0] = limited(f[0], -1, 1);
-    f[1] = limited(at_least_jet(f[1], j[4]), 0, 2);
-    f[2] = limited(f[2], 0, 1);
-    cubic_root(K, f[0], f[1], f[2], j[0], &root, &gap);
+    j[4] = constant(c);
+    cubic_at(K, j, s, f, &root, &gap);
     return complement(K, j[4], s[0], f[1], f[2], root, gap).v;
 }
 

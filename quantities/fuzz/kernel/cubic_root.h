@@ -94,3 +94,19 @@ static void cubic_root(boxes *K, jet p, jet r, jet m, jet alpha2, jet *root, jet
     *gap = combine(K, w_proven, w_centre, p, away, r, by_r, m, by_m);
     *gap = limited(*gap, 0, 2);
 }
+/* The cubic for alpha^2, kappa, a = u.t, b = n.t and c = u.n in g. Returns sigma_u^2 and sigma_n^2 in
+   s, p, r and m in f, the root, and its distance from p. The functions `sizes` and `factors` are
+   printed before this file. Values, here and in g, are cut to bounds that are proven for the whole
+   domain: |a| <= 1, alpha^2 <= sigma^2 <= 1, c <= r, p <= 1 (docs/range.md, docs/closed-form.md). */
+static void cubic_at(boxes *K, jet *g, jet *s, jet *f, jet *root, jet *gap) {
+    g[2] = limited(g[2], -1, 1);
+    g[4] = limited(g[4], 0, 1);
+    sizes(K, g[0], g[1], g[2], g[3], g[4], s);
+    s[0] = limited(at_least_jet(s[0], g[0]), 0, 1);
+    s[1] = limited(at_least_jet(s[1], g[0]), 0, 1);
+    factors(K, g[0], g[1], g[2], g[3], g[4], s[0], s[1], f);
+    f[0] = limited(f[0], -1, 1);
+    f[1] = limited(at_least_jet(f[1], g[4]), 0, 2);
+    f[2] = limited(f[2], 0, 1);
+    cubic_root(K, f[0], f[1], f[2], g[0], root, gap);
+}
