@@ -17,19 +17,18 @@ from collections.abc import Callable
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array, lax
+from jax import Array
 from jaxtyping import Float
 
 from integrals.reference import Estimate
 from integrals.rules.interval import checked_rule, gauss_legendre
-from shading.microfacet.ggx import Roughness, widths
+from shading.microfacet.ggx import Roughness, projected_roughness, widths
+from shading.microfacet.reflection_cone import reflection_cone
 from shading.types import Scalar, Vector
 
 NODES = 96
 AZIMUTHS = 1024
 
-# λ converges from below. Six steps leave the last one with no more than roundings.
-_STEPS = 6
 _LEAST_SCALE = 1e-9
 
 Fresnel = Callable[[Float[Array, "..."]], Array]
@@ -40,36 +39,14 @@ def white(cosine: Array) -> Array:
     return jnp.ones_like(cosine)
 
 
-def cone_root(mu: Array, x2: Array, y2: Array, a: Array, b: Array) -> Array:
-    """Return the positive root of λ = μ + X/(λ + a) + Y/(λ + b), for X, Y, a, b ≥ 0.
-
-    Newton's method starts below the root, at the root for the larger one of a and b. The function
-    is concave, so the iterates rise to the root. The last step carries the derivative.
-    """
-
-    def step(root: Array) -> Array:
-        part_x, part_y = x2 / (root + a), y2 / (root + b)
-        slope = 1 + part_x / (root + a) + part_y / (root + b)
-        return root - (root - mu - part_x - part_y) / slope
-
-    largest = jnp.maximum(a, b)
-    half = (mu - largest) / 2
-    root = lax.stop_gradient(half + jnp.sqrt(half * half + mu * largest + x2 + y2))
-    for _ in range(_STEPS):
-        root = step(root)
-    return step(lax.stop_gradient(root))
-
-
 def ellipse_rule(view: Array, alpha: Array, fresnel: Fresnel, nodes: int, azimuths: int) -> Array:
     """Return E by `nodes` Gauss points in ρ and `azimuths` points in β."""
     # notation: as at the top of this file
     mu = view[2]
-    stretched = alpha * view[:2]
-    drop = alpha * alpha * mu
-    root = cone_root(mu, stretched[0] ** 2, stretched[1] ** 2, drop[0], drop[1])
-    axis = stretched / (root + drop)
-    length2 = 1 + jnp.sum(axis * axis)
-    shares = drop / root
+    cone = reflection_cone(view, alpha)
+    root, drop, axis = cone.eigenvalue, (cone.drop_x, cone.drop_y), (cone.x, cone.y)
+    length2 = 1 + axis[0] ** 2 + axis[1] ** 2
+    shares = jnp.stack(drop) / root
 
     # ρ = c sinh t: near the edge ρ = 0 the integrand changes where ρ is of the order of a/λ.
     unit, unit_weights = gauss_legendre(nodes, 0.0, 1.0)
@@ -94,7 +71,7 @@ def ellipse_rule(view: Array, alpha: Array, fresnel: Fresnel, nodes: int, azimut
     nu = root * rho[:, None] / squared
     i_x, i_y = twice * m_x - view[0], twice * m_y - view[1]
     sigma_light = jnp.sqrt((alpha[0] * i_x) ** 2 + (alpha[1] * i_y) ** 2 + nu * nu)
-    sigma_view = jnp.sqrt(jnp.sum(stretched * stretched) + mu * mu)
+    sigma_view = projected_roughness(view, alpha)
     terms = nu * seen / ((mu * sigma_light + nu * sigma_view) * height)
     terms = terms * fresnel(jnp.minimum(seen / jnp.sqrt(squared), 1.0))
     total = 2 * jnp.pi / azimuths * (rho_weights @ jnp.sum(terms, axis=1))

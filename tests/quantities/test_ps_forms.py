@@ -12,7 +12,7 @@ from fitting.form import traced
 from fitting.points.scattered import scattered_points
 from integrals import PS
 from programs import evaluate, trace
-from programs.bounding.rounding import joined
+from programs.bounding.rounding import chained
 from quantities.fuzz.ps import PS as PROBLEM
 from quantities.fuzz.ps_forms import cubic_ps, one_root_ps, two_root_ps
 
@@ -111,7 +111,7 @@ def _moved(fitted, points) -> float:
     """Return how far rounding to float32 moves values of the exported functions at most."""
     programs = [trace(each) for each in PROBLEM.calling.functions(fitted)]
     columns = PROBLEM.calling.arguments_at(fitted, points)
-    both, inputs = joined(programs), np.concatenate(columns, axis=1).astype(np.float32)
+    both, inputs = chained(programs), np.concatenate(columns, axis=1).astype(np.float32)
     single = evaluate(both, inputs, np.float32).astype(float)
     return float(np.abs(single - evaluate(both, inputs.astype(float))).max())
 
