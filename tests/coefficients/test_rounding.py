@@ -13,7 +13,7 @@ from coefficients.table import parse, serialise
 from fitting.proofs.rounding_error import rounded_box, rounding_kernel
 from programs import evaluate, trace, write_source
 from programs.bounding.compiled import compiler_missing
-from programs.bounding.rounding import joined
+from programs.bounding.rounding import chained
 from programs.bounding.rounding_model import IEEE
 from programs.toolchains.difference import difference
 from programs.toolchains.verification import run_code
@@ -84,7 +84,7 @@ def test_the_bound_holds_at_each_point_even_where_it_is_not_proven_on_boxes(name
     entry = resolve(name)
     functions, given = entry.functions("float"), arguments_of(entry)
     kernel = rounding_kernel(functions, given, IEEE)
-    program, rng = joined([trace(each) for each in functions]), np.random.default_rng(4)
+    program, rng = chained([trace(each) for each in functions]), np.random.default_rng(4)
     low, high = rounded_box(given).T
     points = low + (high - low) * rng.random((3000, len(low))) ** 2
     inputs = np.array(jax.vmap(lambda x: jnp.stack(given.call(*x)))(jnp.asarray(points)))
