@@ -1,5 +1,6 @@
 """`shadefit certify`: prove the largest errors of tables, or the rounding of their code."""
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,6 +10,7 @@ from shadefit.commands.options import Json
 from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
+    from coefficients.catalogue import Entry
     from coefficients.certify import Certification
     from coefficients.rounding import RoundingBounds
     from shadefit.records import CertifiedTable
@@ -26,7 +28,7 @@ def certify(
         float | None,
         typer.Option(
             help="Largest quotient of the proven bound and the largest error found; by default "
-            "1.01; with --rounding 1.2, and 1.5 for more than two variables."
+            "1.01; with --rounding 1.2, and 1.25 for more than two variables."
         ),
     ] = None,
     at_most: Annotated[
@@ -54,10 +56,9 @@ def certify(
     """
     from coefficients.certify import RATIO, chosen, with_largest_error
     from coefficients.certify import certify as certify_entry
-    from coefficients.files import require_writable, write_whole
-    from coefficients.table import serialise
+    from coefficients.files import require_writable
+    from coefficients.rounding import certify_rounding, with_rounding
     from shadefit.outputs import CertifyOutput
-    from shadefit.progress import stages
     from shadefit.terminal import print_json
 
     if at_most is not None and not at_most > 0:
@@ -66,10 +67,47 @@ def certify(
         raise ValueError("--at-most with --rounding: allowed is one of them")
     if out is not None:
         require_writable(out)
+    entries = chosen(tables, closed_forms=rounding)
     if rounding:
-        return _round(tables, upper_ratio, threads, out, json)
-    done: list[Certification] = []
-    entries, ratio = chosen(tables), RATIO if upper_ratio is None else upper_ratio
+        found = _each(
+            entries,
+            lambda entry, report: certify_rounding(
+                entry, upper_ratio, threads=threads, progress=report
+            ),
+            with_rounding,
+            out,
+        )
+        record, show = _rounding_record, _print_rounding
+    else:
+        ratio = RATIO if upper_ratio is None else upper_ratio
+        found = _each(
+            entries,
+            lambda entry, report: certify_entry(
+                entry, ratio, claim=at_most, threads=threads, progress=report
+            ),
+            with_largest_error,
+            out,
+        )
+        record, show = _record, _print
+    if json:
+        print_json(CertifyOutput(tables=[record(each) for each in found]))
+    else:
+        show(found)
+    return 1 if any(each.state in ("refuted", "not proven") for each in found) else 0
+
+
+def _each(
+    entries: "Sequence[Entry]", prove: Callable, certified: Callable, out: Path | None
+) -> list:
+    """Return what `prove(entry, report)` finds for each entry, and show how far it is.
+
+    With `out`, the table `certified(found)` of each that is proven is written there at once.
+    """
+    from coefficients.files import write_whole
+    from coefficients.table import serialise
+    from shadefit.progress import stages
+
+    done = []
     with stages() as progress:
         line = progress.begin("tables", total=len(entries))
         for entry in entries:
@@ -78,52 +116,14 @@ def certify(
             def report(standing, name: str = entry.name) -> None:
                 line.show(_standing(name, standing))
 
-            found = certify_entry(entry, ratio, claim=at_most, threads=threads, progress=report)
+            found = prove(entry, report)
             done.append(found)
             line.advance()
-            if out is not None and found.state == "proven":
-                text = serialise(with_largest_error(found))
+            has_certificates = entry.table is not None and entry.table.certificates is not None
+            if out is not None and has_certificates and found.state == "proven":
+                text = serialise(certified(found))
                 write_whole(out / f"{entry.require_table().name}.json", text)
-    if json:
-        print_json(CertifyOutput(tables=[_record(each) for each in done]))
-    else:
-        _print(done)
-    return 1 if any(each.state in ("refuted", "not proven") for each in done) else 0
-
-
-def _round(
-    tables: list[str], upper_ratio: float | None, threads: int, out: Path | None, json: bool
-) -> int:
-    """Prove what rounding adds to the errors of tables and closed forms."""
-    from coefficients.certify import chosen
-    from coefficients.files import write_whole
-    from coefficients.rounding import certify_rounding, with_rounding
-    from coefficients.table import serialise
-    from shadefit.outputs import CertifyOutput
-    from shadefit.progress import stages
-    from shadefit.terminal import print_json
-
-    entries, done = chosen(tables, closed_forms=True), []
-    with stages() as progress:
-        line = progress.begin("tables", total=len(entries))
-        for entry in entries:
-            line.show(f"{entry.name}: compiling the search")
-
-            def report(standing, name: str = entry.name) -> None:
-                line.show(_standing(name, standing))
-
-            found = certify_rounding(entry, upper_ratio, threads=threads, progress=report)
-            done.append(found)
-            line.advance()
-            certified = entry.table is not None and entry.table.certificates is not None
-            if out is not None and certified and found.state == "proven":
-                text = serialise(with_rounding(found))
-                write_whole(out / f"{entry.require_table().name}.json", text)
-    if json:
-        print_json(CertifyOutput(tables=[_rounding_record(each) for each in done]))
-    else:
-        _print_rounding(done)
-    return 1 if any(each.state == "not proven" for each in done) else 0
+    return done
 
 
 def _rounding_record(each: "RoundingBounds") -> "CertifiedTable":
