@@ -187,6 +187,7 @@ def test_isf_compiles_in_browsers_and_on_desktops(name, written, tmp_path):
         execute(["glslangValidator", "isf.frag"], failure="isf.frag", folder=tmp_path)
 
 
+@pytest.mark.slow
 def test_isf_draws_a_curve(written):
     if toolchain("glsl").missing("float") is not None:
         pytest.skip("no compiler of GLSL is here")

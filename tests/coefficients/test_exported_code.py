@@ -400,6 +400,7 @@ def test_the_same_call_gives_the_same_bytes(few_points, name, constants):
     assert made_by in header_of(first, "#")
 
 
+@pytest.mark.slow
 def test_the_header_says_when_half_is_not_good_enough(few_points):
     """The verdict is that of `shadefit verify`, and a table's own error does not matter."""
     text = header_of(source_file(resolve("published/ps"), "python", "half"), "#")

@@ -46,6 +46,7 @@ def test_an_average_without_a_logarithm_reaches_its_error():
     assert any(largest(n) <= 5e-5 for n in of("ggx-average-albedo") if not n.endswith("-log"))
 
 
+@pytest.mark.slow
 def test_the_published_e_has_so_many_operations_and_such_an_error():
     entry = resolve("published/ggx-directional-albedo")
     assert operations_of(entry) == 83

@@ -252,6 +252,7 @@ def test_with_the_printed_exponent_the_integral_diverges():
     assert all(later < 5 * sooner < 0 for sooner, later in itertools.pairwise(averages[1:]))
 
 
+@pytest.mark.slow
 def test_with_the_corrected_exponent_the_published_constants_fit():
     found = next(e for e in mended("g").publication.errata if e.id == "exponent")
     assert (found.printed, found.corrected) == ("(u.v)(v.n)", "(u.n)(v.n)")

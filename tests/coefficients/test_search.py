@@ -70,6 +70,7 @@ def test_a_refused_form_is_not_tried_again(tmp_path, monkeypatch):
     assert {path.read_text() for path in reasons} == {"it has a pole\n"}
 
 
+@pytest.mark.slow
 def test_refused_forms_are_counted(tmp_path, monkeypatch):
     fit, forms = search.fit, []
 

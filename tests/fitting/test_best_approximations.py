@@ -148,6 +148,7 @@ def test_a_plane_of_two_variables_against_an_independent_linear_program():
     assert on_grid <= solved.fun * (1 + 5e-4)
 
 
+@pytest.mark.slow
 def test_a_quotient_of_monomials_that_the_linear_problem_fits_with_a_pole():
     """The exact values fall to zero: the errors times the denominator are small at a pole."""
     narrow = replace(

@@ -65,6 +65,7 @@ def test_without_the_search_the_ridge_is_missed():
 
 
 @needs_compiler
+@pytest.mark.slow
 def test_the_search_finds_the_ridge_and_the_fit_halves_the_error():
     exchange = Exchange(searches=3, above=2e-3)
     found = fit(PLANE, Goal("linf"), exchange=exchange, counterexamples=counterexamples(code))

@@ -99,6 +99,7 @@ def test_a_compiler_that_fails_is_one_line(monkeypatch):
 
 
 @needs_compiler
+@pytest.mark.slow
 def test_a_compiler_that_does_not_know_the_processor_is_enough(monkeypatch):
     monkeypatch.setattr(compiled, "_FASTER", ("-march=no-such-processor",))
     found = certify_largest_error(FITTED, difference_code(FITTED, exact, 1e-15), 1.05, MIDDLE)
@@ -142,6 +143,7 @@ def replayed(name: str, ratio: float = 1.02) -> int:
 
 
 @needs_compiler
+@pytest.mark.slow
 def test_a_proof_is_replayed_by_other_interval_arithmetic():
     assert replayed("best/q-4") > 50
 
@@ -230,6 +232,7 @@ def test_the_factored_error_of_p_s_is_the_error_of_the_form(name):
 
 
 @needs_compiler
+@pytest.mark.slow
 def test_the_code_of_p_s_encloses_its_error():
     """Small boxes at random, and boxes at the corners of the domain."""
     fitted = resolve("best/ps-11").require_fitted()

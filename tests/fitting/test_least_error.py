@@ -74,6 +74,7 @@ def test_bounds_are_sought_from_the_tightest():
     assert max(LEVELS) < 1
 
 
+@pytest.mark.slow
 def test_the_form_of_g_in_print_is_within_one_per_cent_of_the_least_largest_error():
     form = replace(RATIONAL_G, starts=(np.array([2.0, 0.5, 1.0, 2.0]),))
     found = fit(form, Goal("linf"))

@@ -190,6 +190,7 @@ def compute(tree, c, x, y):
 
 @settings(max_examples=30, deadline=None)
 @given(above=LINEAR, below=LINEAR, free=FREE, around=st.sampled_from(["alone", "sum", "product"]))
+@pytest.mark.slow
 def test_every_quotient_of_linear_functions_is_found(above, below, free, around):
     """(N + …)/(D + …), with a function of the axes added or multiplied, has the form's values."""
 

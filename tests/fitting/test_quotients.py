@@ -88,6 +88,7 @@ def test_a_quotient_is_recovered_from_its_own_values():
     assert np.abs(misfit(RATIONAL_R, GRID, found, values)).max() < 1e-8
 
 
+@pytest.mark.slow
 def test_no_direction_in_the_coefficients_lowers_the_error():
     assert possible_gain(RATIONAL_R, GRID, fitted(), exact()) < 1e-3
 

@@ -39,6 +39,7 @@ def test_a_fit_on_a_grid_has_a_second_opinion_too():
     assert opinion.agreed
 
 
+@pytest.mark.slow
 def test_a_fit_that_is_not_the_best_is_told():
     found = made()
     moved = found.fitted.constants * np.array([1.05, 1, 1, 1, 1])
@@ -48,6 +49,7 @@ def test_a_fit_that_is_not_the_best_is_told():
     assert opinion.other_error == pytest.approx(found.on_grid.rms, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_local_minimum_is_told():
     """The frequency of a wave has a minimum of the sum of squares near every multiple."""
     form = toy_form(

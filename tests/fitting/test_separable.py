@@ -82,6 +82,7 @@ def test_a_fibre_in_the_surface_has_no_terms_that_are_odd_along_it():
     assert np.abs(fits().optimum[:-1, :-1, [2, 4]]).min() > 1e-3
 
 
+@pytest.mark.slow
 def test_more_lights_change_the_best_rms_by_less_than_one_in_a_million():
     grid = trapezoid_grid(RATIONAL_PS.axes[:2], 5)
     rms = [
@@ -114,6 +115,7 @@ def together():
     return solver(COUNT).fit(RATIONAL_PS, 9, "solid-angle", stages.append), stages
 
 
+@pytest.mark.slow
 def test_a_fit_states_the_errors_at_every_node_and_light():
     found, _ = together()
     fitted = RATIONAL_PS.fitted(found.coefficients)

@@ -181,6 +181,7 @@ def test_walk_refuses_bad_input():
         walk(np.array([0.0, 0, 1]), 0.5, paths=1)
 
 
+@pytest.mark.slow
 def test_limit_of_smooth_surfaces():
     x = np.array([0.0, 1e-3, 0.2, 1.1, 4.0, 50.0])
     value, error = limit()(x)
@@ -236,6 +237,7 @@ def test_expansion_of_the_average_albedo():
     np.testing.assert_allclose(missing, leading + next_order, rtol=0, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_edges_have_closed_forms():
     mu, alpha = np.array([0.01, 0.4, 1.0]), np.array([0.1, 0.5, 0.95])
     np.testing.assert_allclose(

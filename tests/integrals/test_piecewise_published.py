@@ -155,6 +155,7 @@ def test_errata_of_transcription_in_eq_23_and_25():
     assert abs(visible_area(blend, 1.2, 0.7).rim - visible_area(twice_x, 1.2, 0.7).rim) > 1e-4
 
 
+@pytest.mark.slow
 def test_erratum_eq_28_creates_energy():
     """The trapezoid rule makes G1 exceed 1 for Beckmann 0.05 with ten segments."""
     ndf = normalised(sampled("beckmann", 0.05, 10))

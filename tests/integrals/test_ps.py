@@ -161,6 +161,7 @@ def cosines(points):
     return np.cos(theta_u), cos_ut, np.cos(theta_f), alpha
 
 
+@pytest.mark.slow
 def test_numbers_of_newton_steps_are_sufficient_and_necessary():
     def worst(steps, least_alpha):
         arguments = cosines(awkward_points(12, 50_000, least_alpha))

@@ -112,6 +112,7 @@ def test_second_derivatives_are_finite_and_equal_finite_differences():
     assert np.all(abs(miss) < 10 * DIFFERENCES / resolved[0] ** 3)
 
 
+@pytest.mark.slow
 def test_derivatives_of_the_sggx_closed_form_are_exact():
     """Compared with the closed form for fibres, which is another formula."""
     points = corners(0.15, 0.5, 1.0)

@@ -150,6 +150,7 @@ def test_slope_is_zero_for_upright_and_lying_fibres():
     np.testing.assert_allclose(slope, 0, atol=1e-13)
 
 
+@pytest.mark.slow
 def test_second_derivatives_are_finite():
     def value(x):
         return R.quadrature(x[0], x[1], nodes=NODES).value

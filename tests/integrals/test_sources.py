@@ -226,6 +226,7 @@ def test_the_albedo_of_a_smooth_surface(mu):
     assert abs(drawn.value - value[0]) <= STANDARD_ERRORS * drawn.error
 
 
+@pytest.mark.slow
 def test_hemisphere_and_sphere_integrate_a_tilted_lobe():
     """The integral of |ω·t| is π over any hemisphere, for even integrands, and 2π on the sphere."""
 
@@ -332,6 +333,7 @@ def test_breaks_in_infinite_ranges(over):
 
 
 @pytest.mark.parametrize("name", some_slow(["smooth", "peak on a plateau"], ["peak on a plateau"]))
+@pytest.mark.slow
 def test_derivatives_equal_finite_differences(name):
     known = INTEGRALS[name]
     value = single(quadrature(known.integrand, [(0, 1)]), PLACE).value
@@ -357,6 +359,7 @@ def test_derivatives_of_an_integral_over_directions():
         np.testing.assert_allclose(slope[index], difference, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_jit_and_vmap_agree_with_single_points():
     leg = single(quadrature(INTEGRALS["kink"].integrand, [(0, 1)]), PLACE).legs["quadrature"]
     a = np.array([0.2, 0.7])

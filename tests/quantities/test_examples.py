@@ -69,6 +69,7 @@ def test_a_quotient_of_the_albedo_of_ggx_is_better_than_the_published_one():
     assert np.all(np.abs(made.fitted.constants) < 60)
 
 
+@pytest.mark.slow
 def test_the_albedo_of_ggx_is_exact():
     """1 − μ ln(1 + 1/μ) at α = 1, and 30-digit values of the same integral elsewhere."""
     (problem,) = load_problems(str(EXAMPLES / "ggx_albedo.py"))
@@ -78,6 +79,7 @@ def test_the_albedo_of_ggx_is_exact():
     np.testing.assert_allclose(problem.reference.values(points), exact, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_measured_albedo_agrees_with_the_integral_within_its_standard_errors():
     (measured,) = load_problems(str(EXAMPLES / "albedo.py"))
     (exact,) = load_problems(str(EXAMPLES / "ggx_albedo.py"))
@@ -90,6 +92,7 @@ def test_the_measured_albedo_agrees_with_the_integral_within_its_standard_errors
     assert 0.7 < apart.std() < 1.3
 
 
+@pytest.mark.slow
 def test_every_form_of_the_measured_albedo_is_fitted():
     (problem,) = load_problems(str(EXAMPLES / "albedo.py"))
     unregister(problem.name)

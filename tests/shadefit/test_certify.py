@@ -38,6 +38,7 @@ def test_tables_are_proven_printed_and_written(capsys, tmp_path, monkeypatch):
 
 
 @needs_compiler
+@pytest.mark.slow
 def test_the_rounding_of_code_is_proven_printed_and_written(capsys, tmp_path):
     status, out, _ = run(
         capsys, "certify", "best/q-4", "--rounding", "--json", "--out", str(tmp_path)

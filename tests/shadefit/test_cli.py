@@ -354,6 +354,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_work(capsys, tmp_
 @example(value=math.nan)
 @example(value="1e999")
 @example(value="--json")
+@pytest.mark.slow
 def test_any_density_is_evaluated_or_refused(capsys, value):
     text = str(value)
     arguments = ["evaluate", "q", f"--density={text}", "--samples", "64", "--json"]
@@ -417,6 +418,7 @@ def test_an_interruption_is_at_once_and_says_what_is_left(tmp_path, arguments, a
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
 
 
+@pytest.mark.slow
 def test_an_interrupted_refit_leaves_the_old_table(tmp_path):
     table = tmp_path / "ps.json"
     table.write_text("old")

@@ -150,6 +150,7 @@ def test_the_language_is_that_of_the_suffix(capsys, tmp_path):
     assert table.read_text() == run(capsys, "export", "q", "--to", "json")[1]
 
 
+@pytest.mark.slow
 def test_verify_says_that_half_is_not_good_enough(capsys, monkeypatch):
     few = functools.partial(exported_code.trial_of, exponent=10)
     monkeypatch.setattr(exported_code, "trial_of", few)

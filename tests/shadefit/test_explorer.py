@@ -154,6 +154,7 @@ def require_the_same(owners):
             np.testing.assert_allclose(each, expected, rtol=0, atol=1e-12, err_msg=name)
 
 
+@pytest.mark.slow
 def test_the_page_evaluates_the_exported_functions(few_tables):
     require_the_same(list(problems().values()))
 

@@ -21,6 +21,7 @@ def run(capsys, folder, *, rounding="float32"):
     return found
 
 
+@pytest.mark.slow
 def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, capsys, monkeypatch):
     found = run(capsys, tmp_path)
     best = found["frontier"]
@@ -101,6 +102,7 @@ def test_a_form_that_was_refused_is_not_tried_again(tmp_path, capsys, monkeypatc
     assert {path.read_text() for path in reasons} == {"it has a pole\n"}
 
 
+@pytest.mark.slow
 def test_the_plot_has_a_line_of_its_own_and_a_pipe_hears_of_the_work(tmp_path, capsys):
     search("q", budget=4, norm="l2", out=tmp_path)
     said = capsys.readouterr()

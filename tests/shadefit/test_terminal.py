@@ -65,6 +65,7 @@ def test_without_colours_and_on_a_dumb_terminal():
     assert same == lines
 
 
+@pytest.mark.slow
 def test_an_old_encoding_in_a_terminal():
     output, lines = shown("compare", "q", width=80, PYTHONIOENCODING="ascii")
     assert output.isascii()
@@ -102,6 +103,7 @@ def test_an_interruption_leaves_one_clean_line(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_progress_leaves_nothing_on_the_screen(tmp_path):
     output, lines = shown("refit", "q", "--grid", "9", "--out", str(tmp_path), "--json", width=80)
     assert "0:00" in output and "q: " in output

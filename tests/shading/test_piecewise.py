@@ -107,6 +107,7 @@ def test_the_blend_of_ggx_is_not_anisotropic_ggx():
     assert abs(blended[0, 0] / known[0, 0] - ratio) < 1e-3
 
 
+@pytest.mark.slow
 def test_analytic_ndfs_are_normalised_and_agree_in_their_limits():
     theta, w = gauss(np.concatenate([[0], np.geomspace(0.003, np.pi / 2, 40)]), 30)
     for values in (

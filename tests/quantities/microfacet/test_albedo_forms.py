@@ -39,6 +39,7 @@ def test_the_form_is_its_equation():
     np.testing.assert_allclose(form_values(FORM.fitted(c), at), expected, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_positive_coefficients_create_no_energy():
     at = np.concatenate([scattered(2000), [[0, 0.01], [1, 0.01], [0, 1], [1, 1]]])
     for seed in range(5):
