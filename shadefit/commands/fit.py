@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from shadefit.commands.form_texts import form_name, parsed_form, with_form
 from shadefit.commands.options import (
     Bounded,
     Json,
@@ -172,7 +173,6 @@ def _fits(
     from shadefit.progress import stages
     from shadefit.result import fit_result
 
-    options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
     results: list[Result] = []
     refused: list[str] = []
     with stages() as progress:
@@ -180,7 +180,7 @@ def _fits(
         for text, each in zip(texts, owner.forms, strict=True):
             line.show(f"{owner.name}: {text}")
             try:
-                results.append(fit_result(owner, each, goal, f"{command} --form {text}{options}"))
+                results.append(fit_result(owner, each, goal, with_form(command, text, goal)))
             except ValueError as error:
                 refused.append(str(error))
             line.advance()
@@ -223,18 +223,8 @@ def _identifier(column: str) -> str:
 
 def _add(owner: "Problem", text: str) -> None:
     """Add the form that a text such as 'rational:2,2' describes."""
-    kind, _, numbers = text.partition(":")
-    if kind not in _SHAPES:
-        raise ValueError(f"--form {text}: allowed are {', '.join(_SHAPES)}, as in rational:2,2")
-    try:
-        counts = [int(part) for part in numbers.split(",")]
-    except ValueError:
-        raise ValueError(f"--form {text}: {numbers!r} are no whole numbers") from None
-    least, most = _COUNTS[kind] if kind in _COUNTS else (1, len(owner.axes))
-    if not least <= len(counts) <= most or min(counts) < 0:
-        allowed = str(least) if least == most else f"{least} to {most}"
-        raise ValueError(f"--form {text}: allowed are {allowed} numbers after {kind}:")
-    _SHAPES[kind](owner, counts, text.replace(":", "-").replace(",", "-"))
+    kind, counts = parsed_form(text, len(owner.axes))
+    _SHAPES[kind](owner, counts, form_name(text))
 
 
 def _rational(owner: "Problem", counts: list[int], name: str) -> None:
@@ -257,13 +247,6 @@ _SHAPES: "dict[str, Callable[[Problem, list[int], str], Any]]" = {
     "piecewise": lambda owner, counts, name: owner.piecewise_linear(
         counts[0] if len(counts) == 1 else counts, name=name
     ),
-}
-# How many numbers a shape takes; those that are not here take one, or one for each axis.
-_COUNTS = {
-    "rational": (2, 2),
-    "polynomial": (1, 1),
-    "exponentials": (1, 2),
-    "poles": (2, 2),
 }
 
 

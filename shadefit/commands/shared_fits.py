@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from shadefit.commands.form_texts import form_name, parsed_form, with_form
+
 if TYPE_CHECKING:
     from shadefit.declaration import Problem
     from shadefit.result import Result
@@ -22,27 +24,23 @@ def shared_fits(
     from shadefit.progress import stages
     from shadefit.shared_denominator import fit_with_shared_denominator
 
-    kind, _, numbers = texts[0].partition(":")
-    counts = [int(each) for each in numbers.split(",") if each.isdecimal()]
-    if len(texts) > 1 or kind != "rational" or f"rational:{','.join(map(str, counts))}" != texts[0]:
+    kind, counts = parsed_form(texts[0], len(owners[0].axes))
+    if len(texts) > 1 or kind != "rational":
         raise ValueError(
             f"--form {' '.join(texts)}: allowed with --shared-denominator is one, rational:M,N"
         )
-    if len(counts) != 2:
-        raise ValueError(f"--form {texts[0]}: allowed are 2 numbers after rational:")
     for field in goal:
         if field not in _FIELDS:
             allowed = ", ".join(f"--{each}" for each in _FIELDS)
             raise ValueError(f"--{field}: allowed with --shared-denominator are {allowed}")
     above, below = (powers(count, len(owners[0].axes), total=True) for count in counts)
-    options = "".join(f" --{k}" if v is True else f" --{k} {v}" for k, v in goal.items())
     with stages() as progress:
         progress.begin(f"{', '.join(each.name for each in owners)}: {texts[0]}")
         return fit_with_shared_denominator(
             owners,
             above,
             below,
-            name=texts[0].replace(":", "-").replace(",", "-"),
-            command=f"{command} --form {texts[0]}{options}",
+            name=form_name(texts[0]),
+            command=with_form(command, texts[0], goal),
             **goal,
         )

@@ -1,6 +1,6 @@
 """The pictures of GGX microfacets: the missing energy, what returns it, and a white furnace."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import jax
@@ -9,7 +9,13 @@ from matplotlib.figure import Figure
 
 from coefficients.catalogue import resolve
 from coefficients.exported_code import exported_values
-from integrals.microfacet import average_albedo, directional_albedo, fresnel_split, smooth_limit
+from integrals.microfacet import (
+    average_albedo,
+    directional_albedo,
+    fresnel_split,
+    schlick_average,
+    smooth_limit,
+)
 from integrals.microfacet.random_walk import schlick, walk
 from shadefit.figures.picture import Picture
 from shadefit.render.metal import Metal, metal_sphere
@@ -110,7 +116,7 @@ def draw_colors() -> Figure:
     figure = Figure(figsize=(9.2, 3.6), layout="constrained")
     panels = figure.subplots(1, len(_SURFACES), sharey=True)
     f0 = _NORMAL_REFLECTANCES
-    fresnel = (1 + 20 * f0) / 21
+    fresnel = np.asarray(schlick_average(f0))
     split = jax.jit(fresnel_split)
     average = jax.jit(average_albedo)
     for panel, (alpha, mu) in zip(panels, _SURFACES, strict=True):
@@ -153,11 +159,18 @@ def draw_furnace() -> Figure:
         "gold, single": partial(_sphere, _GOLD, False),
         "gold, all": partial(_sphere, _GOLD, True),
     }
-    figure = Figure(figsize=(6.4, 9.6), layout="constrained", facecolor="white")
+    return _spheres(
+        {name: [draw(a) for a in _SPHERE_ALPHAS] for name, draw in rows.items()}, 6.4, 9.6
+    )
+
+
+def _spheres(rows: Mapping[str, Sequence[np.ndarray]], width: float, height: float) -> Figure:
+    """Draw a named row of images, one for each α of `_SPHERE_ALPHAS`, under another."""
+    figure = Figure(figsize=(width, height), layout="constrained", facecolor="white")
     panels = figure.subplots(len(rows), len(_SPHERE_ALPHAS))
-    for line, (name, draw) in zip(panels, rows.items(), strict=True):
-        for panel, alpha in zip(line, _SPHERE_ALPHAS, strict=True):
-            panel.imshow(draw(alpha), vmin=0, vmax=1, interpolation="antialiased")
+    for line, (name, images) in zip(panels, rows.items(), strict=True):
+        for panel, image in zip(line, images, strict=True):
+            panel.imshow(image, vmin=0, vmax=1, interpolation="antialiased")
             panel.set(xticks=[], yticks=[])
             for side in ("top", "right", "bottom", "left"):
                 panel.spines[side].set_visible(False)
@@ -175,7 +188,7 @@ def _sphere(reflectances, multiple: bool, alpha: float) -> np.ndarray:
     for f0 in reflectances:
         values = f0 * scale + offset
         if multiple:
-            color = float(color_of_walk((1 + 20 * f0) / 21, average))
+            color = float(color_of_walk(schlick_average(f0), average))
             values = values + color * (1 - scale - offset)
         channels.append(values)
     return _image(channels)
@@ -205,7 +218,10 @@ def _values(name: str, points: np.ndarray) -> np.ndarray:
 
 
 def _image(channels: Sequence[np.ndarray]) -> np.ndarray:
-    """Return an sRGB image (n, n, 3); each channel has the radiances for the cosines `_RIM`."""
+    """Return an sRGB image (n, n, 3); each channel has the radiances for the cosines `_RIM`.
+
+    Unlike `to_srgb`, this keeps bright values: a white sphere must vanish.
+    """
     x = (np.arange(_SPHERE) + 0.5) / _SPHERE * 2.3 - 1.15
     radius2 = x[:, None] ** 2 + x**2
     cosine = np.sqrt(np.clip(1 - radius2, 0, 1))
@@ -216,19 +232,12 @@ def _image(channels: Sequence[np.ndarray]) -> np.ndarray:
 
 def draw_metal() -> Figure:
     """Render a sphere of gold for four roughnesses, without and with multiple scattering."""
-    figure = Figure(figsize=(7.4, 4.1), layout="constrained")
-    panels = figure.subplots(2, len(_SPHERE_ALPHAS))
-    for line, (name, multiple) in zip(panels, (("single", False), ("all", True)), strict=True):
-        for panel, alpha in zip(line, _SPHERE_ALPHAS, strict=True):
-            image = metal_sphere(Metal(alpha, _GOLD), size=_SPHERE, multiple=multiple)
-            panel.imshow(to_srgb(image), interpolation="antialiased")
-            panel.set(xticks=[], yticks=[])
-            for side in ("top", "right", "bottom", "left"):
-                panel.spines[side].set_visible(False)
-        line[0].set_ylabel(name)
-    for panel, alpha in zip(panels[0], _SPHERE_ALPHAS, strict=True):
-        panel.set_title(f"α = {alpha:g}")
-    return figure
+
+    def sphere(alpha: float, multiple: bool) -> np.ndarray:
+        return to_srgb(metal_sphere(Metal(alpha, _GOLD), size=_SPHERE, multiple=multiple))
+
+    rows = {"single": False, "all": True}
+    return _spheres({k: [sphere(a, v) for a in _SPHERE_ALPHAS] for k, v in rows.items()}, 7.4, 4.1)
 
 
 _SPLIT = jax.jit(jax.vmap(partial(fresnel_split, nodes=48, azimuths=96), (0, None)))

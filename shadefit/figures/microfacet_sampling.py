@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from integrals.microfacet.sampling_variance import moments, variances
 from shadefit.figures.picture import Picture
+from shading.directions import direction
 from shading.microfacet.horizon import horizon_height
 from shading.microfacet.reflection_cone import components
 from shading.microfacet.sampling import cap_bound, projected_areas, stretched_length
@@ -140,8 +141,7 @@ def _row(view, alphas):
 
 
 def _view(theta: int, phi: int) -> np.ndarray:
-    theta, phi = np.radians([theta, phi])
-    return np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+    return np.asarray(direction(*np.radians([theta, phi])))
 
 
 def _roughness(alpha_x: float, alpha_y: float) -> str:

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from integrals.microfacet import average_albedo, directional_albedo
+from integrals.microfacet import average_albedo, directional_albedo, schlick_average
 from integrals.monte_carlo import unit_points
 from shadefit.render.scenes import SCENES
 from shadefit.render.shade import BACKDROP, SKY
@@ -123,7 +123,7 @@ def _radiance(environment, normal, view, numbers, metal, table, average, multipl
     level, angle = jnp.sqrt(1 - numbers[2]), 2 * jnp.pi * numbers[3]
     diffuse = jnp.stack([level * jnp.cos(angle), level * jnp.sin(angle), height])
     missing = (1 - _albedo(table, local[2])) * (1 - _albedo(table, height)) / (1 - average)
-    color = jax.vmap(color_of_walk, (0, None))((1 + 20 * f0) / 21, average)
+    color = jax.vmap(color_of_walk, (0, None))(schlick_average(f0), average)
     return single + multiple * color * missing * environment(diffuse @ frame)
 
 
