@@ -201,19 +201,32 @@ class NdfCheck(Part):
     reason: str | None
 
 
+class NdfProfile(Part):
+    """One profile of a blend: `mass` is that of its source interpolated at the knots."""
+
+    mass: Size
+    knots: list[Number]
+    values: list[Size]
+
+
 class NdfOutput(_Output):
-    """`shadefit ndf`: `mass` is that of the source interpolated at the knots."""
+    """`shadefit ndf`: `mass` is that of the source interpolated at the knots.
+
+    For a blend, `mass`, `knots` and `values` are those of the profile at azimuth 0, and `across`
+    has those at π/2. The errors are None if the blend has no anisotropic source.
+    """
 
     command: Literal["ndf"] = "ndf"
     target: str
     linear_in: str
     segments: Count
     mass: Size
-    total_variation: Size
-    masking: Size
-    directions: Count
+    total_variation: Size | None
+    masking: Size | None
+    directions: Count | None
     knots: list[Number]
     values: list[Size]
+    across: NdfProfile | None
     checks: list[NdfCheck]
     files: list[str]
 
