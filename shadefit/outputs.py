@@ -201,6 +201,23 @@ class NdfCheck(Part):
     reason: str | None
 
 
+class NdfLookup(Part):
+    """A texture that stands for a function, and its largest error."""
+
+    texels: Count
+    error: Size
+
+
+class NdfCost(Part):
+    """The cost of one function of an NDF's code, and the `textures` over `axes` instead of it."""
+
+    function: str
+    operations: Count
+    rounding: Size
+    axes: str
+    textures: list[NdfLookup]
+
+
 class NdfProfile(Part):
     """One profile of a blend: `mass` is that of its source interpolated at the knots."""
 
@@ -228,6 +245,7 @@ class NdfOutput(_Output):
     values: list[Size]
     across: NdfProfile | None
     checks: list[NdfCheck]
+    costs: list[NdfCost]
     files: list[str]
 
 

@@ -12,7 +12,7 @@ from shadefit.completion import complete_language
 if TYPE_CHECKING:
     from coefficients.ndf_table import NdfBlendTable, NdfTable
     from quantities.piecewise.targets import AnisotropicTarget, Target
-    from shadefit.outputs import NdfCheck, NdfOutput
+    from shadefit.outputs import NdfCheck, NdfCost, NdfOutput
 
 
 def ndf(
@@ -57,6 +57,12 @@ def ndf(
     verify: Annotated[
         bool, typer.Option("--verify", help="Compile and run the code of --to, and compare it.")
     ] = False,
+    cost: Annotated[
+        bool,
+        typer.Option(
+            "--cost", help="Print the operations of the code, and the errors of textures instead."
+        ),
+    ] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File for the table.")] = None,
     json: Json = False,
 ) -> None:
@@ -80,6 +86,8 @@ def ndf(
         linear_in=linear_in,
         monotone=monotone,
     )
+    if cost and table.linear_in != "cos2":
+        raise ValueError("--cost: code is written for NDFs that are linear in cos2 only")
     text, checks = None, {}
     if to is not None:
         from coefficients.ndf_code import check_ndf, ndf_source
@@ -96,9 +104,10 @@ def ndf(
         for key, each in checks.items()
     ]
     if json:
-        print_json(_output(table, verified, files))
+        print_json(_output(table, verified, files, _costs(table) if cost else []))
     else:
         _print(table, verified, files)
+        _print_costs(_costs(table) if cost else [])
     if any(each.status == "failed" for each in verified):
         raise typer.Exit(1)
 
@@ -126,7 +135,10 @@ def _require(
 
 
 def _output(
-    table: "NdfTable | NdfBlendTable", verified: "list[NdfCheck]", files: list[str]
+    table: "NdfTable | NdfBlendTable",
+    verified: "list[NdfCheck]",
+    files: list[str],
+    costs: "list[NdfCost]",
 ) -> "NdfOutput":
     from coefficients.ndf_table import NdfTable
     from shadefit.outputs import NdfOutput, NdfProfile
@@ -148,7 +160,48 @@ def _output(
         if isotropic
         else NdfProfile(mass=table.y.mass, knots=table.y.knots, values=table.y.values),
         checks=verified,
+        costs=costs,
         files=files,
+    )
+
+
+def _costs(table: "NdfTable | NdfBlendTable") -> "list[NdfCost]":
+    from coefficients.ndf_cost import ndf_costs
+    from shadefit.outputs import NdfCost, NdfLookup
+
+    return [
+        NdfCost(
+            function=each.name,
+            operations=each.operations,
+            rounding=each.rounding,
+            axes=each.axes,
+            textures=[NdfLookup(texels=one.texels, error=one.error) for one in each.lookups],
+        )
+        for each in ndf_costs(table)
+    ]
+
+
+def _print_costs(costs: "list[NdfCost]") -> None:
+    from shadefit.terminal import print_table
+
+    if not costs:
+        return
+    print_table(
+        "Cost of the code, and textures that could stand for it",
+        ["function", "operations", "error in float32", "texture over", "texels", "its error"],
+        [
+            [
+                each.function,
+                str(each.operations),
+                f"{each.rounding:.1e}",
+                each.axes or "none",
+                ", ".join(str(one.texels) for one in each.textures),
+                ", ".join(f"{one.error:.1e}" for one in each.textures),
+            ]
+            for each in costs
+        ],
+        "Textures are interpolated linearly. Errors are the largest at 6000 random points, against "
+        "the code in float64.",
     )
 
 

@@ -28,8 +28,33 @@ def test_a_table_is_read(tmp_path, capsys):
     assert run(file, "--out", copy, "--json") == 0
     assert CHECKED.validate_json(capsys.readouterr().out).values == table["values"]
     assert json.loads(copy.read_text()) == table
-    assert run(file) == 0
-    assert "1.00e-01" in capsys.readouterr().out
+    assert run(file, "--cost") == 0
+    printed = capsys.readouterr().out
+    assert "1.00e-01" in printed
+    assert "NdfVisibleNormal" in printed
+
+
+def test_the_cost_beside_textures_is_stated(tmp_path, capsys):
+    table = {"schema": "shadefit.ndf/1", "target": "steps", "linear_in": "cos2", "monotone": True}
+    table |= {"knots": [0.0, 1.0, math.pi / 2], "values": [0.5, 0.25, 0.0], "mass": 1.0}
+    table |= {
+        "errors": {"total_variation": 0.5, "masking": 0.1, "directions": 9},
+        "command": "none",
+    }
+    file = tmp_path / "steps.json"
+    file.write_text(json.dumps(table))
+    assert run(file, "--cost", "--json") == 0
+    costs = {each.function: each for each in CHECKED.validate_json(capsys.readouterr().out).costs}
+    assert costs["NdfVisibility"].operations == 6
+    assert costs["NdfHidden"].axes == "NdotV"
+    few, many = costs["NdfHidden"].textures
+    # Linear interpolation of a smooth function: the error falls with the square of the step.
+    assert few.texels == 32
+    assert many.texels == 128
+    assert many.error < few.error / 8
+    assert costs["NdfHidden"].rounding < 1e-6
+    file.write_text(json.dumps(table | {"linear_in": "angle"}))
+    assert run(file, "--cost") == 2
 
 
 @pytest.mark.slow
