@@ -1,22 +1,27 @@
-"""A fitted piecewise-linear NDF as a JSON table. This module needs no JAX."""
+"""A fitted NDF, one profile or a blend of two, as a JSON table. This module needs no JAX."""
 
 import math
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from coefficients.json_text import laid_out, read_object
+from coefficients.json_text import laid_out
 from coefficients.table_parts import Number, Part, Positive, Text
+from coefficients.table_text import read_text, validated
 
-SCHEMA = "shadefit.ndf/1"
+SCHEMA, BLEND_SCHEMA = "shadefit.ndf/1", "shadefit.ndf-blend/1"
 MAX_BYTES = 1 << 20
 
 Values = Annotated[list[Number], Field(min_length=2, max_length=1024)]
 
 
 class NdfErrors(Part):
-    """The errors of a fit: ½ ∫ |ΔD| cos θ dω, and the largest |ΔG1| over `directions` angles."""
+    """The errors of a fit: ½ ∫ |ΔD| cos θ dω, and the largest |ΔG1| over `directions` directions.
+
+    Those of a profile in a blend are compared with that profile's own source.
+    """
 
     total_variation: Annotated[Number, Field(ge=0)]
     masking: Annotated[Number, Field(ge=0)]
@@ -42,36 +47,62 @@ class NdfTable(Part):
 
     @model_validator(mode="after")
     def _ordered(self):
-        if len(self.knots) != len(self.values):
-            raise ValueError(f"{len(self.knots)} knots and {len(self.values)} values")
-        if any(not low < high for low, high in zip(self.knots, self.knots[1:], strict=False)):
-            raise ValueError("knots: expected are increasing angles")
-        if self.knots[0] != 0 or abs(self.knots[-1] - math.pi / 2) > 1e-12:
-            raise ValueError("knots: expected are angles from 0 to π/2")
-        if min(self.values) < 0 or max(self.values) == 0:
-            raise ValueError("values: expected are numbers ≥ 0 that are not all zero")
+        _require_profile(self.knots, self.values)
         return self
 
 
-def serialise_ndf(table: NdfTable) -> str:
+class BlendProfile(Part):
+    """One of the two profiles of a blend. `mass` is c_iso, as that of an `NdfTable`."""
+
+    knots: Values
+    values: Values
+    mass: Positive
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        _require_profile(self.knots, self.values)
+        return self
+
+
+class NdfBlendTable(Part):
+    """The blend of two isotropic NDFs, `x` at azimuth 0 and `y` at π/2 (shading/piecewise/blend).
+
+    `errors` are those against the anisotropic `target`, or None if the blend was made of two
+    profiles that have no other meaning. All else is as in an `NdfTable`.
+    """
+
+    schema_: Literal["shadefit.ndf-blend/1"] = Field(alias="schema")
+    target: Text
+    linear_in: Literal["angle", "cos2"]
+    monotone: bool
+    x: BlendProfile
+    y: BlendProfile
+    errors: NdfErrors | None
+    command: Text
+
+
+def _require_profile(knots: list[float], values: list[float]) -> None:
+    """Raise ValueError for knots and values that are no NDF."""
+    if len(knots) != len(values):
+        raise ValueError(f"{len(knots)} knots and {len(values)} values")
+    if any(not low < high for low, high in pairwise(knots)):
+        raise ValueError("knots: expected are increasing angles")
+    if knots[0] != 0 or abs(knots[-1] - math.pi / 2) > 1e-12:
+        raise ValueError("knots: expected are angles from 0 to π/2")
+    if min(values) < 0 or max(values) == 0:
+        raise ValueError("values: expected are numbers ≥ 0 that are not all zero")
+
+
+def serialise_ndf(table: NdfTable | NdfBlendTable) -> str:
     """Return a table as JSON text, with keys in a fixed order and all digits of the numbers."""
     return laid_out(table.model_dump(by_alias=True)) + "\n"
 
 
-def read_ndf(path: Path) -> NdfTable:
+def read_ndf(path: Path) -> NdfTable | NdfBlendTable:
     """Read a table from a file. Raises ValueError, with one line, if it is not a valid one."""
-    try:
-        if not path.is_file():
-            raise ValueError(f"{path}: no such file")
-        if path.stat().st_size > MAX_BYTES:
-            raise ValueError(f"{path} is larger than {MAX_BYTES} bytes: no table of an NDF is")
-        return NdfTable.model_validate(read_object(path.read_text("utf-8-sig")), strict=True)
-    except ValidationError as error:
-        first = error.errors(include_input=False, include_url=False)[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the table"
-        message = first["msg"].removeprefix("Value error, ")
-        raise ValueError(f"{path}: {place[:100]!r}: {message[:200]}") from None
-    except (UnicodeDecodeError, RecursionError):
-        raise ValueError(f"{path} is no table of an NDF") from None
-    except OSError as error:
-        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+    return validated(_table_of, read_text(path, MAX_BYTES), str(path))
+
+
+def _table_of(data: dict[str, Any]) -> NdfTable | NdfBlendTable:
+    kind = NdfBlendTable if data.get("schema") == BLEND_SCHEMA else NdfTable
+    return kind.model_validate(data, strict=True)

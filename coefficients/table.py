@@ -1,12 +1,13 @@
 """Coefficient tables, as they are written to JSON and read from it. This module needs no JAX."""
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from coefficients.json_text import laid_out, read_object
+from coefficients.json_text import laid_out
 from coefficients.table_parts import (
     About,
     Argument,
@@ -28,6 +29,7 @@ from coefficients.table_parts import (
     Uncertainty,
     Vector,
 )
+from coefficients.table_text import read_text, validated
 
 SCHEMA = "shadefit.table/2"
 # A larger file is refused before it is parsed. All real tables are far smaller.
@@ -101,41 +103,12 @@ def parse(text: str, source: str) -> Table:
 
     Raises ValueError with a message of one line for anything that is not a valid table.
     """
-    try:
-        return Table.model_validate(read_object(text), strict=True)
-    except ValidationError as error:
-        first = error.errors(include_input=False, include_url=False)[0]
-        # The place of an error contains keys and indices, and the types that the validator tried.
-        # Only keys and indices help a reader.
-        parts = [str(part) for part in first["loc"] if "[" not in str(part)]
-        place = ".".join(parts) or "the table"
-        message = first["msg"].removeprefix("Value error, ")
-        raise ValueError(f"{source}: {_one_line(place)}: {_one_line(message)}") from None
-    except RecursionError:
-        raise ValueError(f"{source} is no JSON table: nested too deeply") from None
-    except ValueError as error:
-        raise ValueError(f"{source} is no JSON table: {_one_line(str(error))}") from None
-
-
-def _one_line(text: str) -> str:
-    """Shorten text and remove control codes, because it may come from a hostile file."""
-    shown = " ".join("".join(c if c.isprintable() else " " for c in text[:300]).split())
-    return shown if len(text) <= 200 else f"{shown[:200]}…"
+    return validated(partial(Table.model_validate, strict=True), text, source)
 
 
 def read(path: Path) -> Table:
     """Read a table from a file. Raises ValueError if it is missing or not a valid table."""
-    try:
-        if not path.is_file():
-            raise ValueError(f"{path}: no such file")
-        if path.stat().st_size > MAX_BYTES:
-            raise ValueError(f"{path} is larger than {MAX_BYTES} bytes: no table is")
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{path} is no UTF-8 text") from None
-    except OSError as error:
-        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
-    return parse(text, str(path))
+    return parse(read_text(path, MAX_BYTES), str(path))
 
 
 def serialise(table: Table) -> str:

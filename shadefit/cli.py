@@ -96,6 +96,7 @@ _add(
     "ndf",
     ndf,
     "Examples: shadefit ndf ggx:0.1 -o ggx.json --to hlsl --code ggx.hlsl; "
+    "shadefit ndf ggx:0.2,0.3 --to glsl --verify; "
     "shadefit ndf measured.csv --theta theta --value D --segments 24",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")

@@ -201,20 +201,51 @@ class NdfCheck(Part):
     reason: str | None
 
 
+class NdfLookup(Part):
+    """A texture that stands for a function, and its largest error."""
+
+    texels: Count
+    error: Size
+
+
+class NdfCost(Part):
+    """The cost of one function of an NDF's code, and the `textures` over `axes` instead of it."""
+
+    function: str
+    operations: Count
+    rounding: Size
+    axes: str
+    textures: list[NdfLookup]
+
+
+class NdfProfile(Part):
+    """One profile of a blend: `mass` is that of its source interpolated at the knots."""
+
+    mass: Size
+    knots: list[Number]
+    values: list[Size]
+
+
 class NdfOutput(_Output):
-    """`shadefit ndf`: `mass` is that of the source interpolated at the knots."""
+    """`shadefit ndf`: `mass` is that of the source interpolated at the knots.
+
+    For a blend, `mass`, `knots` and `values` are those of the profile at azimuth 0, and `across`
+    has those at π/2. The errors are None if the blend has no anisotropic source.
+    """
 
     command: Literal["ndf"] = "ndf"
     target: str
     linear_in: str
     segments: Count
     mass: Size
-    total_variation: Size
-    masking: Size
-    directions: Count
+    total_variation: Size | None
+    masking: Size | None
+    directions: Count | None
     knots: list[Number]
     values: list[Size]
+    across: NdfProfile | None
     checks: list[NdfCheck]
+    costs: list[NdfCost]
     files: list[str]
 
 

@@ -21,6 +21,13 @@ def gauss_legendre(nodes: int, lower: float, upper: float) -> tuple[np.ndarray, 
     return lower + half * (x + 1), half * weights
 
 
+def composite_gauss(ends: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss–Legendre nodes and weights, (segments · nodes,) each, between the `ends`."""
+    x, weights = gauss_legendre(nodes, -1.0, 1.0)
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (x + 1)).ravel(), (half * weights).ravel()
+
+
 @functools.cache
 def exponential_decay(step: float) -> tuple[np.ndarray, np.ndarray]:
     """Return nodes and weights for ∫₀^∞ f(s) ds, where f is smooth and decays at least like e^(−s).

@@ -1,9 +1,8 @@
-"""Fits of a piecewise-linear NDF: its values at the knots, by two linear programs.
+"""Fits of a piecewise-linear NDF: its values at the knots, by the programs of `linear_fit`.
 
 The mass, the moment ∫ D sin²θ dθ, the hidden area H of every direction, and D at any angle are
-linear in the values. The first program minimises the total variation ½ ∫ |D − D_target| cos θ dω
-under D ≥ 0, with the mass and the moment of the target. The second minimises the largest error of
-G1, to first order, while the total variation may grow to `TRADE` times its least value.
+linear in the values. The fit has the mass and the moment of the target. The total variation is
+½ ∫ |D − D_target| cos θ dω.
 """
 
 from dataclasses import dataclass
@@ -12,17 +11,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from fitting.solvers.linear_programs import solve_program
 from integrals.piecewise.smith import hidden_area
+from integrals.rules.interval import composite_gauss
 from quantities.piecewise.knots import equidistributed_knots
-from quantities.piecewise.targets import Target, gauss_points
+from quantities.piecewise.linear_fit import Rows, fitted_values
+from quantities.piecewise.targets import Target
 from shading.piecewise.moments import mass, moment, normalised
 from shading.piecewise.ndf import Profile, density, profile
 
-# By how much the second program may increase the total variation.
-TRADE = 1.25
 # Knots that miss the peak make the mass of the interpolated NDF too large.
 MOST_MASS = 1.05
+# Where D vanishes, a knot's value is of the order of what would add this mass.
+LEAST_MASS = 1e-5
 _NODES = 8
 
 
@@ -60,15 +60,9 @@ def fit_ndf(
     """
     places = equidistributed_knots(target.of, segments, variable) if knots is None else knots
     start = profile(places, np.maximum(target.of(places), 0.0), variable)
-    size = float(mass(start))
-    if not 1 / MOST_MASS <= size <= MOST_MASS:
-        raise ValueError(
-            f"{target.name}: {len(places) - 1} segments miss the peak: the interpolated NDF has "
-            f"the mass {size:.4g}, allowed are {1 / MOST_MASS:.3g} to {MOST_MASS:g}; give more"
-        )
-    program = _Program(target, start, monotone)
-    values = program.solve()
-    fitted = normalised(profile(places, values, variable))
+    size = required_mass(start, target.name)
+    rows, scale = _rows(target, start, monotone)
+    fitted = normalised(profile(places, fitted_values(rows) * scale, variable))
     angles = _directions(400)
     return NdfFit(
         target.name,
@@ -81,10 +75,21 @@ def fit_ndf(
     )
 
 
+def required_mass(start: Profile, name: str) -> float:
+    """Return the mass of an interpolated target. Raises ValueError if its knots miss the peak."""
+    size = float(mass(start))
+    if not 1 / MOST_MASS <= size <= MOST_MASS:
+        raise ValueError(
+            f"{name}: {start.knots.size - 1} segments miss the peak: the interpolated NDF has "
+            f"the mass {size:.4g}, allowed are {1 / MOST_MASS:.3g} to {MOST_MASS:g}; give more"
+        )
+    return size
+
+
 def total_variation(ndf: Profile, target: Target) -> float:
     """Return ½ ∫ |D − D_target| cos θ dω."""
     ends = np.unique(np.concatenate([np.asarray(ndf.knots), np.geomspace(1e-4, np.pi / 2, 200)]))
-    at, weight = gauss_points(ends, _NODES)
+    at, weight = composite_gauss(ends, _NODES)
     gap = np.abs(np.asarray(density(ndf, at)) - target.of(at))
     return float(np.pi * np.sum(weight * gap * np.cos(at) * np.sin(at)))
 
@@ -121,78 +126,34 @@ def _basis(ndf: Profile, at: jax.Array, angles: jax.Array) -> tuple[jax.Array, .
     return jax.lax.map(hat, jnp.eye(ndf.knots.size))
 
 
-class _Program:
-    """The rows of both programs, for values that are divided by a scale of each knot."""
+def _rows(target: Target, start: Profile, monotone: bool) -> tuple[Rows, np.ndarray]:
+    """Return the rows of both programs, and the scale of each knot's value."""
+    knots = np.asarray(start.knots)
+    at, weight = composite_gauss(knots, _NODES)
+    measure = np.pi * weight * np.cos(at) * np.sin(at)
+    angles = _directions(120)
+    exact = target.hidden_areas(angles)
+    cosine = np.cos(angles)
+    masses, moments, values, areas = (
+        np.asarray(each) for each in _basis(start, jnp.asarray(at), jnp.asarray(angles))
+    )
+    # A knot's value is of the order of D there, or where D vanishes, of what would be seen.
+    scale = np.maximum(np.asarray(start.values), LEAST_MASS / (2 * masses))
+    slope = cosine / (cosine + exact) ** 2
+    fine, fine_weight = composite_gauss(np.linspace(0, 1, 400) ** 2 * np.pi / 2, _NODES)
+    size = float(np.sum(fine_weight * target.of(fine) * np.sin(fine) ** 2))
+    rows = Rows(
+        np.stack([masses * scale, moments * scale / size]),
+        np.ones(2),
+        rises(scale) if monotone else np.zeros((0, len(knots))),
+        measure[:, None] * values.T * scale,
+        measure * np.asarray(target.of(at)),
+        slope[:, None] * areas.T * scale,
+        slope * exact,
+    )
+    return rows, scale
 
-    def __init__(self, target: Target, start: Profile, monotone: bool):
-        knots = np.asarray(start.knots)
-        self.at, weight = gauss_points(knots, _NODES)
-        self.measure = np.pi * weight * np.cos(self.at) * np.sin(self.at)
-        angles = _directions(120)
-        exact = target.hidden_areas(angles)
-        cosine = np.cos(angles)
-        masses, moments, values, areas = (
-            np.asarray(each) for each in _basis(start, jnp.asarray(self.at), jnp.asarray(angles))
-        )
-        known = np.asarray(start.values)
-        # A knot's value is of the order of D there, or where D vanishes, of what would be seen.
-        self.scale = np.maximum(known, 1e-5 / (2 * masses))
-        self.masses, self.moments = masses * self.scale, moments * self.scale
-        self.values = values.T * self.scale
-        self.wanted = np.asarray(target.of(self.at))
-        slope = cosine / (cosine + exact) ** 2
-        self.areas = slope[:, None] * areas.T * self.scale
-        self.exact = slope * exact
-        fine, fine_weight = gauss_points(np.linspace(0, 1, 400) ** 2 * np.pi / 2, _NODES)
-        self.moment = np.sum(fine_weight * target.of(fine) * np.sin(fine) ** 2)
-        self.monotone = monotone
 
-    def solve(self) -> np.ndarray:
-        """Return the values (n,) at the knots. Raises ValueError if a program is not solved."""
-        knots, points = len(self.scale), len(self.at)
-        size = float(self.moment)
-        shape = [np.stack([self.masses, self.moments / size])]
-        shape += [-shape[0]]
-        ends = [np.ones(2), -np.ones(2)]
-        if self.monotone:
-            rise = np.diff(np.diag(self.scale), axis=0)
-            shape.append(rise / np.maximum(self.scale[:-1], self.scale[1:])[:, None])
-            ends.append(np.zeros(knots - 1))
-        shape, ends = np.concatenate(shape), np.concatenate(ends)
-        # |D − D_target| ≤ e at every point, in units of the measure's share.
-        gap = self.measure[:, None] * self.values
-        wanted = self.measure * self.wanted
-        bound = -np.eye(points)
-        matrix = np.block(
-            [
-                [shape, np.zeros((len(shape), points))],
-                [gap, bound],
-                [-gap, bound],
-            ]
-        )
-        limit = np.concatenate([ends, wanted, -wanted])
-        cost = np.concatenate([np.zeros(knots), np.ones(points)])
-        first = solve_program(cost, matrix, limit, [(0, None)] * (knots + points))
-        if first is None:
-            raise ValueError("no NDF at these knots has the mass and the moment of the target")
-        least = first[knots:].sum()
-        # The largest error of G1 is t, in units of what the first solution has.
-        own = np.abs(self.areas @ first[:knots] - self.exact).max()
-        if own < 1e-12:
-            return first[:knots] * self.scale
-        rows = self.areas / own
-        column = -np.ones((len(rows), 1))
-        none = np.zeros((len(rows), points))
-        matrix = np.block(
-            [
-                [matrix, np.zeros((len(matrix), 1))],
-                [np.zeros((1, knots)), np.full((1, points), 1 / least), np.zeros((1, 1))],
-                [rows, none, column],
-                [-rows, none, column],
-            ]
-        )
-        limit = np.concatenate([limit, [TRADE], self.exact / own, -self.exact / own])
-        cost = np.concatenate([np.zeros(knots + points), [1.0]])
-        second = solve_program(cost, matrix, limit, [(0, None)] * (knots + points + 1))
-        best = first if second is None else second
-        return np.maximum(best[:knots], 0) * self.scale
+def rises(scale: np.ndarray) -> np.ndarray:
+    """Return rows (n − 1, n) that are not positive if the values times `scale` do not increase."""
+    return np.diff(np.diag(scale), axis=0) / np.maximum(scale[:-1], scale[1:])[:, None]

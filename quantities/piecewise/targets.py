@@ -1,7 +1,8 @@
-"""The isotropic NDFs that a piecewise-linear one is fitted to: analytic ones, and measured samples.
+"""The NDFs that a piecewise-linear one is fitted to: analytic ones, and measured samples.
 
 A target is named as on the command line: `ggx:0.1`, `beckmann:0.1`, `student-t:0.1,3` (the width,
-and the exponent γ of the Student-t NDF), or it is a table of angles and values.
+and the exponent γ of the Student-t NDF), or it is a table of angles and values. `ggx:0.1,0.3` and
+`beckmann:0.1,0.3` are anisotropic, with the widths along x and y.
 """
 
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from scipy.interpolate import PchipInterpolator
 
 from integrals.data import table
 from integrals.piecewise.smith import hidden_rule
+from integrals.rules.interval import composite_gauss
 from shading.piecewise import slopes
 
 # Steps between the angles at which a target is integrated: small enough for widths above 0.002.
@@ -37,16 +39,44 @@ class Target:
         return hidden_areas_of(self.of, angles)
 
 
+@dataclass(frozen=True, eq=False)
+class AnisotropicTarget:
+    """An anisotropic NDF to fit: of GGX or Beckmann, with the widths αx and αy along x and y.
+
+    Both are distributions of slopes that are stretched along x and y. At the azimuth φ, D is the
+    isotropic one of the width (cos²φ/αx² + sin²φ/αy²)^(−½) times that width squared over αx αy, and
+    Λ is the isotropic one of the width √(αx² cos²φ + αy² sin²φ).
+    """
+
+    name: str
+    kind: str
+    widths: tuple[float, float]
+
+    def profile(self, width: float) -> Target:
+        """Return the isotropic NDF of this kind and of a width."""
+        return _analytic(self.kind, (width,))
+
+    def of(self, theta: np.ndarray, phi: np.ndarray | float) -> np.ndarray:
+        """Return D, per steradian, at polar angles and azimuths in radians, which broadcast."""
+        x, y = self.widths
+        width = 1 / np.hypot(np.cos(phi) / x, np.sin(phi) / y)
+        own = slopes.beckmann if self.kind == "beckmann" else partial(slopes.student_t, exponent=2)
+        return np.asarray(own(theta, width)) * width**2 / (x * y)
+
+    def hidden_areas(self, theta: np.ndarray, phi: np.ndarray) -> np.ndarray:
+        """Return H (k,) of directions at polar angles (k,) and azimuths (k,), in radians."""
+        x, y = self.widths
+        found = np.zeros(len(theta))
+        for each in np.unique(phi):
+            at = phi == each
+            width = float(np.hypot(x * np.cos(each), y * np.sin(each)))
+            found[at] = self.profile(width).hidden_areas(theta[at])
+        return found
+
+
 def breaks() -> np.ndarray:
     """Return increasing angles from 0 to π/2 between which targets are integrated."""
     return np.concatenate([[0.0], np.geomspace(_FINEST, np.pi / 2, _PANELS)])
-
-
-def gauss_points(ends: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Gauss points and weights, (segments · nodes,) each, between increasing ends."""
-    x, weights = np.polynomial.legendre.leggauss(nodes)
-    half = np.diff(ends)[:, None] / 2
-    return (ends[:-1, None] + half * (x + 1)).ravel(), (half * weights).ravel()
 
 
 def hidden_areas_of(of: Callable, angles: np.ndarray) -> np.ndarray:
@@ -61,24 +91,42 @@ def _rules(angles: jax.Array, places: jax.Array) -> tuple[jax.Array, jax.Array]:
 
 
 def analytic_ndf(name: str) -> Target:
-    """Return the analytic target of a name such as 'ggx:0.1'. Raises ValueError for other names."""
+    """Return the isotropic target of a name such as 'ggx:0.1'. Raises ValueError for others."""
+    found = named_ndf(name)
+    if isinstance(found, AnisotropicTarget):
+        raise ValueError(f"{name!r} is anisotropic: allowed here is one width")
+    return found
+
+
+def named_ndf(name: str) -> Target | AnisotropicTarget:
+    """Return the target of a name such as 'ggx:0.1', or 'ggx:0.1,0.3' with two widths.
+
+    The first width is along x. Raises ValueError for other names, and for widths outside 0.005 to 2
+    and exponents outside 1.6 to 1000.
+    """
     kind, _, numbers = name.partition(":")
     try:
-        given = [float(part) for part in numbers.split(",")]
+        given = tuple(float(part) for part in numbers.split(","))
     except ValueError:
-        given = []
-    count = {"ggx": 1, "beckmann": 1, "student-t": 2}.get(kind)
-    if count is None or len(given) != count:
+        given = ()
+    if len(given) not in {"ggx": (1, 2), "beckmann": (1, 2), "student-t": (2,)}.get(kind, ()):
         raise ValueError(
-            f"{name!r} is no NDF: allowed are ggx:WIDTH, beckmann:WIDTH, student-t:WIDTH,EXPONENT, "
-            "or the name of a file of columns"
+            f"{name!r} is no NDF: allowed are ggx:WIDTH, beckmann:WIDTH, ggx:WIDTH,WIDTH, "
+            "beckmann:WIDTH,WIDTH, student-t:WIDTH,EXPONENT, or the name of a file of columns"
         )
-    if not 0.005 <= given[0] <= 2:
-        raise ValueError(f"{name}: width {given[0]:g}: allowed are 0.005 to 2")
+    for width in given[:1] if kind == "student-t" else given:
+        if not 0.005 <= width <= 2:
+            raise ValueError(f"{name}: width {width:g}: allowed are 0.005 to 2")
     if kind == "student-t" and not 1.6 <= given[1] <= 1000:
         raise ValueError(f"{name}: exponent {given[1]:g}: allowed are 1.6 to 1000")
+    if kind != "student-t" and len(given) == 2:
+        return AnisotropicTarget(name, kind, (given[0], given[1]))
+    return _analytic(kind, given, name)
+
+
+def _analytic(kind: str, given: tuple[float, ...], name: str = "") -> Target:
     if kind == "beckmann":
-        of = partial(_numpy, slopes.beckmann, (given[0],))
+        of = partial(_numpy, slopes.beckmann, given[:1])
     else:
         of = partial(_numpy, slopes.student_t, (given[0], 2.0 if kind == "ggx" else given[1]))
     return Target(name, of, 1.0)
@@ -120,6 +168,6 @@ def measured_ndf(
         return np.maximum(between(np.clip(at, theta[0], theta[-1])), 0.0)
 
     ends = np.unique(np.concatenate([[0.0, np.pi / 2], np.minimum(theta, np.pi / 2)]))
-    at, weight = gauss_points(ends, 6)
+    at, weight = composite_gauss(ends, 6)
     mass = float(2 * np.pi * np.sum(weight * raw(at) * np.cos(at) * np.sin(at)))
     return Target(path.name, lambda at: raw(at) / mass, mass)

@@ -10,8 +10,9 @@ from shadefit.commands.options import Json
 from shadefit.completion import complete_language
 
 if TYPE_CHECKING:
-    from coefficients.ndf_table import NdfTable
-    from shadefit.outputs import NdfCheck
+    from coefficients.ndf_table import NdfBlendTable, NdfTable
+    from quantities.piecewise.targets import AnisotropicTarget, Target
+    from shadefit.outputs import NdfCheck, NdfCost, NdfOutput
 
 
 def ndf(
@@ -19,10 +20,18 @@ def ndf(
         str,
         typer.Argument(
             help="What is fitted: ggx:WIDTH, beckmann:WIDTH, student-t:WIDTH,EXPONENT, or a file "
-            "of columns (CSV with a header, NPY or NPZ); or the table NAME.json of an NDF, which "
-            "is exported or verified as it is."
+            "of columns (CSV with a header, NPY or NPZ); ggx:WIDTH,WIDTH or beckmann:WIDTH,WIDTH, "
+            "with the widths along x and y, is fitted by a blend of two profiles; or the table "
+            "NAME.json of an NDF, which is exported or verified as it is."
         ),
     ],
+    across: Annotated[
+        str | None,
+        typer.Option(
+            help="A second isotropic source, a name or a file: the NDF is the blend of SOURCE at "
+            "azimuth 0 and of this one at 90 degrees."
+        ),
+    ] = None,
     theta: Annotated[str, typer.Option(help="Column of the polar angles of normals.")] = "theta",
     value: Annotated[
         str, typer.Option(help="Column of the NDF's values, in any unit: they are normalised.")
@@ -48,68 +57,57 @@ def ndf(
     verify: Annotated[
         bool, typer.Option("--verify", help="Compile and run the code of --to, and compare it.")
     ] = False,
+    cost: Annotated[
+        bool,
+        typer.Option(
+            "--cost", help="Print the operations of the code, and the errors of textures instead."
+        ),
+    ] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File for the table.")] = None,
     json: Json = False,
 ) -> None:
-    """Fit the values of an isotropic distribution of normals at knots, by linear programs.
+    """Fit the values of a distribution of normals at knots, by linear programs.
 
-    Mass and grazing shadows are those of the source. Prints the total
-    variation and the largest error of the masking G1. Fits whose knots miss the peak are refused.
+    The mass of a fit is one. Prints the total variation and the largest error of the masking G1.
+    Fits whose knots miss the peak are refused.
     """
     from coefficients.files import write_whole
     from coefficients.ndf_table import serialise_ndf
-    from shadefit.outputs import NdfCheck, NdfOutput
+    from shadefit.outputs import NdfCheck
     from shadefit.terminal import print_json
 
     _require(linear_in, to, code, verify, out)
-    fitting = {
-        "theta": theta,
-        "D": value,
-        "degrees": degrees,
-        "segments": segments,
-        "linear_in": linear_in,
-        "monotone": monotone,
-    }
-    table = _table(source, fitting)
-    text, checks = None, []
+    table = _table(
+        source,
+        across,
+        columns=(theta, value),
+        degrees=degrees,
+        segments=segments,
+        linear_in=linear_in,
+        monotone=monotone,
+    )
+    if cost and table.linear_in != "cos2":
+        raise ValueError("--cost: code is written for NDFs that are linear in cos2 only")
+    text, checks = None, {}
     if to is not None:
         from coefficients.ndf_code import check_ndf, ndf_source
 
         text = ndf_source(table, to, name=name)
-        checks = check_ndf(table, to) if verify else []
+        checks = check_ndf(table, to, name=name) if verify else {}
     if out is not None:
         write_whole(out, serialise_ndf(table))
     if code is not None and text is not None:
         write_whole(code, text)
     files = [str(each) for each in (out, code) if each is not None]
-    parts = ("D", "Hidden", "Visibility", "SquaredSine")
     verified = [
-        NdfCheck(
-            function=f"{name}{part}",
-            language=each.language,
-            status=each.status,
-            reason=each.reason,
-        )
-        for part, each in zip(parts, checks, strict=False)
+        NdfCheck(function=key, language=each.language, status=each.status, reason=each.reason)
+        for key, each in checks.items()
     ]
     if json:
-        print_json(
-            NdfOutput(
-                target=table.target,
-                linear_in=table.linear_in,
-                segments=len(table.knots) - 1,
-                mass=table.mass,
-                total_variation=table.errors.total_variation,
-                masking=table.errors.masking,
-                directions=table.errors.directions,
-                knots=table.knots,
-                values=table.values,
-                checks=verified,
-                files=files,
-            )
-        )
+        print_json(_output(table, verified, files, _costs(table) if cost else []))
     else:
         _print(table, verified, files)
+        _print_costs(_costs(table) if cost else [])
     if any(each.status == "failed" for each in verified):
         raise typer.Exit(1)
 
@@ -136,21 +134,97 @@ def _require(
             require_writable_file(file)
 
 
-def _print(table: "NdfTable", verified: "list[NdfCheck]", files: list[str]) -> None:
+def _output(
+    table: "NdfTable | NdfBlendTable",
+    verified: "list[NdfCheck]",
+    files: list[str],
+    costs: "list[NdfCost]",
+) -> "NdfOutput":
+    from coefficients.ndf_table import NdfTable
+    from shadefit.outputs import NdfOutput, NdfProfile
+
+    isotropic = isinstance(table, NdfTable)
+    first = table if isotropic else table.x
+    errors = table.errors
+    return NdfOutput(
+        target=table.target,
+        linear_in=table.linear_in,
+        segments=len(first.knots) - 1,
+        mass=first.mass,
+        total_variation=errors.total_variation if errors else None,
+        masking=errors.masking if errors else None,
+        directions=errors.directions if errors else None,
+        knots=first.knots,
+        values=first.values,
+        across=None
+        if isotropic
+        else NdfProfile(mass=table.y.mass, knots=table.y.knots, values=table.y.values),
+        checks=verified,
+        costs=costs,
+        files=files,
+    )
+
+
+def _costs(table: "NdfTable | NdfBlendTable") -> "list[NdfCost]":
+    from coefficients.ndf_cost import ndf_costs
+    from shadefit.outputs import NdfCost, NdfLookup
+
+    return [
+        NdfCost(
+            function=each.name,
+            operations=each.operations,
+            rounding=each.rounding,
+            axes=each.axes,
+            textures=[NdfLookup(texels=one.texels, error=one.error) for one in each.lookups],
+        )
+        for each in ndf_costs(table)
+    ]
+
+
+def _print_costs(costs: "list[NdfCost]") -> None:
     from shadefit.terminal import print_table
 
+    if not costs:
+        return
     print_table(
-        f"{table.target}, linear in {table.linear_in} between {len(table.knots)} knots",
+        "Cost of the code, and textures that could stand for it",
+        ["function", "operations", "error in float32", "texture over", "texels", "its error"],
+        [
+            [
+                each.function,
+                str(each.operations),
+                f"{each.rounding:.1e}",
+                each.axes or "none",
+                ", ".join(str(one.texels) for one in each.textures),
+                ", ".join(f"{one.error:.1e}" for one in each.textures),
+            ]
+            for each in costs
+        ],
+        "Textures are interpolated linearly. Errors are the largest at 6000 random points, against "
+        "the code in float64.",
+    )
+
+
+def _print(table: "NdfTable | NdfBlendTable", verified: "list[NdfCheck]", files: list[str]) -> None:
+    from coefficients.ndf_table import NdfTable
+    from shadefit.terminal import print_table
+
+    profiles = [table] if isinstance(table, NdfTable) else [table.x, table.y]
+    errors = table.errors
+    knots = " and ".join(str(len(each.knots)) for each in profiles)
+    compared = f" G1 at {errors.directions} directions." if errors else ""
+    print_table(
+        f"{table.target}, linear in {table.linear_in} between {knots} knots",
         ["mass of the interpolated", "total variation", "largest error of G1"],
         [
             [
-                f"{table.mass:.4f}",
-                f"{table.errors.total_variation:.2e}",
-                f"{table.errors.masking:.2e}",
+                " and ".join(f"{each.mass:.4f}" for each in profiles),
+                f"{errors.total_variation:.2e}" if errors else "not known",
+                f"{errors.masking:.2e}" if errors else "not known",
             ]
         ],
-        f"The mass is that of the source interpolated at these knots; that of the fit is 1. "
-        f"G1 at {table.errors.directions} directions.",
+        f"The mass is that of the source interpolated at these knots; that of the fit is 1."
+        f"{compared}",
     )
     for each in verified:
         why = f": {each.reason}" if each.reason else ""
@@ -159,39 +233,60 @@ def _print(table: "NdfTable", verified: "list[NdfCheck]", files: list[str]) -> N
         print(each)
 
 
-def _table(source: str, given: dict) -> "NdfTable":
-    """Return the table of a file, or that of a fit to what the source names."""
-    from coefficients.ndf_table import SCHEMA, NdfErrors, NdfTable, read_ndf
+def _table(
+    source: str,
+    across: str | None,
+    *,
+    columns: tuple[str, str],
+    degrees: bool,
+    segments: int,
+    linear_in: str,
+    monotone: bool,
+) -> "NdfTable | NdfBlendTable":
+    """Return the table of a file, or that of a fit to what the sources name."""
+    from coefficients.ndf_table import read_ndf
 
     path = Path(source)
     if path.suffix == ".json":
+        if across is not None:
+            raise ValueError("--across: allowed with a source that is fitted, not with a table")
         return read_ndf(path)
+    from coefficients.ndf_record import table_of, table_of_blend, table_of_two
+    from quantities.piecewise.blend_fit import fit_blend
     from quantities.piecewise.fit import fit_ndf
-    from quantities.piecewise.targets import analytic_ndf, measured_ndf
+    from quantities.piecewise.targets import AnisotropicTarget
 
+    targets = [
+        _target(each, columns, degrees=degrees) for each in (source, across) if each is not None
+    ]
     command = ["shadefit", "ndf", source]
-    if path.exists() or path.suffix in (".csv", ".npy", ".npz"):
-        target = measured_ndf(path, given["theta"], given["D"], degrees=given["degrees"])
-        command += ["--theta", given["theta"], "--value", given["D"]]
-        command += ["--degrees"] if given["degrees"] else []
-    else:
-        target = analytic_ndf(source)
-    segments, linear_in, monotone = given["segments"], given["linear_in"], given["monotone"]
+    command += ["--across", across] if across is not None else []
+    if any(_is_file(each) for each in (source, across) if each is not None):
+        command += ["--theta", columns[0], "--value", columns[1]]
+        command += ["--degrees"] if degrees else []
     command += ["--segments", str(segments), "--linear-in", linear_in]
     command += ["--monotone"] if monotone else []
-    fit = fit_ndf(target, segments, variable=linear_in, monotone=monotone)
-    return NdfTable(
-        schema=SCHEMA,
-        target=fit.target,
-        linear_in=linear_in,
-        monotone=monotone,
-        knots=[float(each) for each in fit.profile.knots],
-        values=[float(each) for each in fit.profile.values],
-        mass=fit.mass,
-        errors=NdfErrors(
-            total_variation=fit.total_variation,
-            masking=fit.masking_error,
-            directions=fit.directions,
-        ),
-        command=shlex.join(command),
-    )
+    text = shlex.join(command)
+    if isinstance(targets[0], AnisotropicTarget) and across is None:
+        fit = fit_blend(targets[0], segments, variable=linear_in, monotone=monotone)
+        return table_of_blend(fit, text)
+    fits = []
+    for each in targets:
+        if isinstance(each, AnisotropicTarget):
+            raise ValueError(f"--across with {each.name}: allowed are two isotropic sources")
+        fits.append(fit_ndf(each, segments, variable=linear_in, monotone=monotone))
+    return table_of(fits[0], text) if len(fits) == 1 else table_of_two(*fits, text)
+
+
+def _target(
+    source: str, columns: tuple[str, str], *, degrees: bool
+) -> "Target | AnisotropicTarget":
+    from quantities.piecewise.targets import measured_ndf, named_ndf
+
+    if _is_file(source):
+        return measured_ndf(Path(source), *columns, degrees=degrees)
+    return named_ndf(source)
+
+
+def _is_file(source: str) -> bool:
+    return Path(source).exists() or Path(source).suffix in (".csv", ".npy", ".npz")

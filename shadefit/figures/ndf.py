@@ -1,4 +1,4 @@
-"""Pictures of the piecewise-linear NDF: the three figures of the paper, with stated knots."""
+"""Pictures of the piecewise-linear NDF: the paper's three figures, and rendered spheres."""
 
 from functools import partial
 
@@ -10,7 +10,15 @@ from matplotlib.patches import Patch
 
 from integrals.piecewise.published import masking
 from integrals.piecewise.smith import smith_g1
+from quantities.piecewise.fit import fit_ndf
+from quantities.piecewise.targets import analytic_ndf
 from shadefit.figures.picture import Picture
+from shadefit.render.microfacet_sphere import (
+    ggx_microfacets,
+    lit_sphere,
+    piecewise_microfacets,
+)
+from shadefit.render.srgb import to_srgb
 from shading.piecewise.blend import Blend, azimuth_cdf
 from shading.piecewise.moments import normalised
 from shading.piecewise.ndf import density, profile, uniform_knots
@@ -22,6 +30,8 @@ VALUES_Y = (0.3, 0.9, 0.5, 0.8, 0.4, 0.6, 0.2, 0.3, 0.1)
 _BLUE, _ORANGE, _GREEN, _BLACK = "#0072b2", "#d55e00", "#009e73", "#000000"
 _PARTS = {"I₁": "#9ecae1", "I₂¹": "#a1d99b", "I₂²": "#fdd0a2", "hidden": "#636363"}
 _TILTS = (20.0, 50.0, 80.0)
+GOLD = (1.0, 0.78, 0.34)
+_WIDTHS, _SEGMENTS, _SPHERE, _GAIN = (0.1, 0.4), 16, 240, 30.0
 
 
 def ndf_pictures() -> dict[str, Picture]:
@@ -49,6 +59,14 @@ def ndf_pictures() -> dict[str, Picture]:
             "(Eq. 28). On the right Beckmann's distribution of width 0.05 between ten uniform "
             "knots, where that rule exceeds 1 (the grey line).",
             draw_masking,
+        ),
+        "ndf-spheres": Picture(
+            "Spheres of GGX and of the piecewise-linear NDF",
+            "Spheres of gold under three lamps at infinity, with what Kulla and Conty return of "
+            "multiple scattering: GGX of width 0.1 and 0.4 with its own masking and albedo, NDFs "
+            "of 16 segments fitted to it, and the difference of their linear radiance, multiplied "
+            "by 30 about a mid grey.",
+            draw_spheres,
         ),
     }
 
@@ -129,6 +147,28 @@ def draw_masking() -> Figure:
     for axes in (isotropic, blended, narrow):
         axes.set(xlabel="$θ_o$ (degrees)", ylabel="G1")
         axes.legend(loc="lower left")
+    return figure
+
+
+def draw_spheres() -> Figure:
+    """Render spheres of GGX, of fitted NDFs, and their difference."""
+    figure = Figure(figsize=(7.4, 4.9), layout="constrained")
+    panels = figure.subplots(2, 3)
+    for line, width in zip(panels, _WIDTHS, strict=True):
+        target = analytic_ndf(f"ggx:{width}")
+        fitted = fit_ndf(target, _SEGMENTS).profile
+        truth, own = (
+            lit_sphere(each, GOLD, size=_SPHERE)
+            for each in (ggx_microfacets(width), piecewise_microfacets(fitted))
+        )
+        gap = np.clip(0.5 + _GAIN * (own - truth), 0, 1)
+        for axes, image in zip(line, (to_srgb(truth), to_srgb(own), gap), strict=True):
+            axes.imshow(image, interpolation="antialiased")
+            axes.set(xticks=[], yticks=[])
+        line[0].set_ylabel(f"α = {width:g}")
+    titles = ("GGX", f"{_SEGMENTS} segments", f"difference × {_GAIN:g}")
+    for axes, title in zip(panels[0], titles, strict=True):
+        axes.set_title(title)
     return figure
 
 

@@ -9,15 +9,17 @@ r = √(s² − u²). The integrand of H (`smith`) has a primitive that is zero 
 A is the angle of the integration, and cA + hA + δ is the azimuth C. The formula has no difference
 of nearly equal angles: for small θo, C and cA are nearly equal, and 1 − c is small. In the factor
 of b, ur − 2cδ is what remains to cancel; it is ur h(h − u²)/z + 2c(x − atan x) with z = cu² + r²
-and x = hur/z.
+and x = hur/z. It serves visible normals. At grazing light, where a narrow peak counts, P is much
+smaller than its terms; H itself is therefore a sum over knots (`bend_areas`).
 """
 
 import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
+from shading.piecewise.bend_areas import bend_areas
 from shading.piecewise.defects import tangent_defect
-from shading.piecewise.ndf import Profile, coefficients
+from shading.piecewise.ndf import Profile, squared_sine_steps
 from shading.types import Scalar
 
 # Below this ratio x the two terms of ur − 2cδ are taken together.
@@ -73,11 +75,12 @@ def hidden_area_closed(ndf: Profile, theta_o: Scalar) -> Array:
     """
     if ndf.variable != "cos2":
         raise ValueError("the closed form is for profiles that are linear in 'cos2' only")
-    a, b = coefficients(ndf)
-    u, rim = beyond_edge(ndf.knots, theta_o)
-    for_a, for_b = hidden_primitives(u, rim, theta_o)
-    # The segments go from the larger cosine to the smaller.
-    area = jnp.sum(a * jnp.diff(for_a) + b * jnp.diff(for_b))
+    slopes = -jnp.diff(ndf.values) / squared_sine_steps(ndf.knots[:-1], ndf.knots[1:])
+    u, rim = beyond_edge(ndf.knots[1:-1], theta_o)
+    bends = -jnp.diff(slopes) * bend_areas(u, rim, theta_o)
+    # What the values and the slope at the horizon add, where u = 0 and A = π/2.
+    h = 2 * jnp.sin(jnp.asarray(theta_o) / 2) ** 2
+    area = jnp.pi / 2 * h * (ndf.values[-1] + slopes[-1] / 4 * h) + jnp.sum(bends)
     # H is an integral of what is nowhere negative: below zero there is only rounding.
     return jnp.maximum(area, 0.0)
 

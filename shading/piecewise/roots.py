@@ -12,6 +12,10 @@ from shading.types import Scalar
 # Newton's steps double the digits, except near a place where the slope vanishes: there each step
 # halves the distance, as a bisection does. 48 steps reach the last digits of float64 in both cases.
 STEPS = 48
+# In units of the first bracket: what rounding may move a step of Newton out of a later one. Near
+# the root, a compiler that fuses operations may find the sign and the size of the gap differently;
+# a bisection would then leave the root.
+MARGIN = 1e-5
 
 
 def increasing_root(
@@ -26,21 +30,24 @@ def increasing_root(
     """Return x in [lower, upper] with f(x) = goal, for a function that does not decrease there.
 
     `of(x, parameters)` returns f(x) and its derivative. Every step is Newton's, or a bisection if
-    that would leave the bracket. The number of steps is fixed, so that it ends in any precision.
-    The result has derivatives with respect to `parameters` (a pytree) and `goal`.
+    that would leave the bracket by more than rounding does. The number of steps is fixed, so that
+    it ends in any precision. The result has derivatives with respect to `parameters` (a pytree) and
+    `goal`.
     """
     held = jax.lax.stop_gradient(parameters)
     aim = jax.lax.stop_gradient(jnp.asarray(goal))
     low, high = (jax.lax.stop_gradient(jnp.asarray(each, float)) for each in (lower, upper))
 
+    margin = MARGIN * (high - low)
+
     def step(_, state):
         low, high, x = state
         value, slope = of(x, held)
-        low = jnp.where(value <= aim, x, low)
-        high = jnp.where(value <= aim, high, x)
-        moved = x - (value - aim) / jnp.where(slope > 0, slope, 1.0)
-        inside = (slope > 0) & (moved >= low) & (moved <= high)
-        return low, high, jnp.where(inside, moved, (low + high) / 2)
+        gap = value - aim
+        low, high = jnp.where(gap <= 0, x, low), jnp.where(gap <= 0, high, x)
+        moved = x - gap / jnp.where(slope > 0, slope, 1.0)
+        inside = (slope > 0) & (moved >= low - margin) & (moved <= high + margin)
+        return low, high, jnp.where(inside, jnp.clip(moved, low, high), (low + high) / 2)
 
     _, _, x = jax.lax.fori_loop(0, steps, step, (low, high, (low + high) / 2))
     x = jax.lax.stop_gradient(x)

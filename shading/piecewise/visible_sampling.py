@@ -86,6 +86,12 @@ def visible_area(ndf: Profile | Blend, outgoing: Vector) -> Array:
     return x + y
 
 
+def visible_share(ndf: Blend, outgoing: Vector) -> Array:
+    """Return the part of the visible area that D_x has, which decides the profile drawn from."""
+    x, y, _ = _visible_parts(ndf, *_angles(outgoing))
+    return x / (x + y)
+
+
 def _angles(outgoing: Vector) -> tuple[Array, Array]:
     x, y, z = jnp.asarray(outgoing)
     across = x * x + y * y

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from quantities.piecewise.fit import TRADE, fit_ndf, masking_error, total_variation
+from quantities.piecewise.fit import fit_ndf, masking_error, total_variation
 from quantities.piecewise.knots import equidistributed_knots
+from quantities.piecewise.linear_fit import TRADE
 from quantities.piecewise.targets import analytic_ndf, measured_ndf
 from shading.piecewise.moments import mass, moment, normalised
 from shading.piecewise.ndf import profile, uniform_knots
@@ -119,7 +120,8 @@ def test_bad_samples_are_refused(tmp_path, rows, said):
     [
         ("ggx", "is no NDF: allowed are ggx:WIDTH"),
         ("phong:3", "is no NDF"),
-        ("ggx:0.1,2", "is no NDF"),
+        ("ggx:0.1,2", "is anisotropic: allowed here is one width"),
+        ("ggx:0.1,2,3", "is no NDF"),
         ("ggx:0.001", "allowed are 0.005 to 2"),
         ("student-t:0.1,1.2", "allowed are 1.6 to 1000"),
     ],
