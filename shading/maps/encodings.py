@@ -39,6 +39,8 @@ NO_DIFFERENCE_HALF = 1e-7
 _LARGEST_U = (1 - LEAST_ALPHA) / (1 + LEAST_ALPHA)
 _LARGEST_RHO = (1 - LEAST_ALPHA**2) / (1 + LEAST_ALPHA**2)
 _LEAST_ROOT = sqrt(LEAST_ALPHA)
+# Vectors of the quarter root that are too long are divided by no less than the root of this.
+_SHORT2 = 1e-4
 
 # (αt, αb, cos θ, sin θ), and (Sxx, Sxy, Syy, αtαb)
 Widths = tuple[Array, Array, Array, Array]
@@ -144,10 +146,14 @@ def _correlated(name: str, correlation: Callable[[Scalar], tuple[Array, Array, A
 # --- Pauli components: a function f of S is stored as (m, d cos 2θ, d sin 2θ), m ± d = f(α) ----
 
 
+def _signed(channel: Scalar) -> Array:
+    return (_clamped(channel, 0.0, 1.0) - CENTRE) * (1 / SPREAD)
+
+
 def _components(x, y, z, isotropic, least: float):
     """Return m, d with least ≤ m − d and m + d ≤ 1, cos 2θ and sin 2θ."""
     mean = _clamped(x, least, 1.0)
-    along, across = ((_clamped(each, 0.0, 1.0) - CENTRE) / SPREAD for each in (y, z))
+    along, across = (_signed(each) for each in (y, z))
     length2 = along * along + across * across
     equal = length2 <= isotropic
     length = jnp.sqrt(jnp.where(equal, 1.0, length2))
@@ -164,16 +170,20 @@ def _root_widths(x, y, z, isotropic=NO_DIFFERENCE):
 
 
 def _root_entries(x, y, z, isotropic=NO_DIFFERENCE):
-    mean, half, cos2, sin2 = _components(x, y, z, isotropic, _LEAST_ROOT)
-    along, across = half * cos2, half * sin2
+    mean = _clamped(x, _LEAST_ROOT, 1.0)
+    along, across = (_signed(each) for each in (y, z))
+    length2 = along * along + across * across
+    largest = jnp.minimum(mean - _LEAST_ROOT, 1 - mean)
+    within = length2 <= largest * largest
+    scale = jnp.where(within, 1.0, largest / jnp.sqrt(jnp.maximum(length2, _SHORT2)))
+    along, across, half2 = along * scale, across * scale, length2 * (scale * scale)
     # R = Q², and S = R²: sums of squares
     first, second = mean + along, mean - along
     r_xx, r_yy = first * first + across * across, second * second + across * across
     r_xy = 2 * mean * across
-    square = r_xy * r_xy
-    product = (mean - half) * (mean + half)
+    square, root = r_xy * r_xy, mean * mean - half2
     s_xy = r_xy * (r_xx + r_yy)
-    return r_xx * r_xx + square, s_xy, r_yy * r_yy + square, product * product
+    return r_xx * r_xx + square, s_xy, r_yy * r_yy + square, root * root
 
 
 def _log_widths(x, y, z, isotropic=NO_DIFFERENCE):
