@@ -45,8 +45,8 @@ _SUMMARIES = {
     "matrix": "The matrix of a texel: m[0] = Sxx, m[1] = Sxy, m[2] = Syy, and m[3] = alphaT alphaB.",
 }
 _REMARKS = {
-    "widths": "The tangent of the larger width w[0] is w[2] times the tangent of the frame plus w[3] "
-    "times its bitangent; for an isotropic texel it is (1, 0). x, y and z may be any numbers: they "
+    "widths": "The tangent of the larger width w[0] is w[2] times the tangent of the frame plus "
+    "w[3] times its bitangent; for an isotropic texel it is (1, 0). x, y and z may be any numbers: they "
     "are clamped to [0, 1], and the widths to [0.01, 1]",
     "matrix": "D = m[3]^3/(pi (m[2] hx^2 - 2 m[1] hx hy + m[0] hy^2 + m[3]^2 hz^2)^2) in the frame "
     "of the normal. x, y and z may be any numbers: they are clamped to [0, 1], and the matrix is "

@@ -5,8 +5,8 @@ map turns two such densities into those of the matrices 1 and diag(1/a, 1/b), an
 variation ½∫|p − q| as it is. So it depends on two numbers only: a ≤ b, the eigenvalues of S₂⁻¹S₁.
 Let D = (ab)^(-¼), and D ≤ 1; otherwise the two densities are exchanged. Along a ray at the angle φ
 with k = a cos²φ + b sin²φ, the density of the matrix 1 is the larger one beyond one distance if
-k > 1/D, and nowhere otherwise. The integral along the ray is 1 − 1/(kD²) + (1 − D)²/(D²(k − 1)), and
-its integral over φ consists of arctangents.
+k > 1/D, and nowhere otherwise. The integral along the ray is 1 − 1/(kD²) + (1 − D)²/(D²(k − 1)),
+and its integral over φ consists of arctangents.
 """
 
 import numpy as np
