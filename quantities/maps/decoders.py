@@ -41,13 +41,13 @@ _ROUNDING = 1e-13
 _RECORDS = {"widths": Record("AnisoWidths", "array", "w"), "matrix": Record("AnisoMatrix")}
 _RESULTS = {"widths": "w", "matrix": "m"}
 _SUMMARIES = {
-    "widths": "The widths w[0] >= w[1] of a texel, and the cosine and sine of the tangent's angle.",
-    "matrix": "The matrix of a texel: m[0] = Sxx, m[1] = Sxy, m[2] = Syy, and m[3] = alphaT alphaB.",
+    "widths": "Widths w[0] >= w[1] of a texel, and the cosine and sine of its tangent's angle.",
+    "matrix": "Matrix of a texel: m[0] = Sxx, m[1] = Sxy, m[2] = Syy, m[3] = alphaT alphaB.",
 }
 _REMARKS = {
     "widths": "The tangent of the larger width w[0] is w[2] times the tangent of the frame plus "
-    "w[3] times its bitangent; for an isotropic texel it is (1, 0). x, y and z may be any numbers: they "
-    "are clamped to [0, 1], and the widths to [0.01, 1]",
+    "w[3] times its bitangent; for an isotropic texel it is (1, 0). x, y and z may be any numbers: "
+    "they are clamped to [0, 1], and the widths to [0.01, 1]",
     "matrix": "D = m[3]^3/(pi (m[2] hx^2 - 2 m[1] hx hy + m[0] hy^2 + m[3]^2 hz^2)^2) in the frame "
     "of the normal. x, y and z may be any numbers: they are clamped to [0, 1], and the matrix is "
     "positive definite",

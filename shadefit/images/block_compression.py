@@ -4,17 +4,11 @@ The encoders are those of quicktex (BC1, BC5) and etcpak (BC7). The decoder is a
 texture2ddecoder, so that an error of an encoder cannot hide in its own decoder.
 """
 
-from typing import Literal
-
-import etcpak
 import numpy as np
-import quicktex
-import texture2ddecoder
-from jaxtyping import UInt8
-from quicktex.s3tc.bc1 import BC1Encoder
-from quicktex.s3tc.bc5 import BC5Encoder
+from jaxtyping import Shaped, UInt8
 
-BlockFormat = Literal["bc1", "bc5", "bc7"]
+from shadefit.images.optional_libraries import optional_library
+
 # The channels of a format, and the bytes of a block of 4×4 texels
 CHANNELS: dict[str, int] = {"bc1": 3, "bc5": 2, "bc7": 3}
 BLOCK_BYTES: dict[str, int] = {"bc1": 8, "bc5": 16, "bc7": 16}
@@ -24,7 +18,7 @@ _BC1_LEVEL, _BC7_LEVEL = 18, 1
 _LARGEST_SIDE = 16384
 
 
-def encode_blocks(format: BlockFormat, texels: UInt8[np.ndarray, "height width channels"]) -> bytes:
+def encode_blocks(format: str, texels: Shaped[np.ndarray, "height width channels"]) -> bytes:
     """Return the blocks of an image, row by row.
 
     `texels` has 3 channels for BC1 and BC7, and 2 for BC5. A side that is no multiple of 4 is
@@ -49,7 +43,7 @@ def encode_blocks(format: BlockFormat, texels: UInt8[np.ndarray, "height width c
 
 
 def decode_blocks(
-    format: BlockFormat, blocks: bytes, width: int, height: int
+    format: str, blocks: bytes, width: int, height: int
 ) -> UInt8[np.ndarray, "height width channels"]:
     """Return the texels of blocks: 3 channels for BC1 and BC7, 2 for BC5.
 
@@ -62,19 +56,20 @@ def decode_blocks(
         raise ValueError(
             f"{len(blocks)} bytes of {format} for {width}×{height}: allowed are {expected}"
         )
-    decode = getattr(texture2ddecoder, f"decode_{format}")
+    decode = getattr(optional_library("texture2ddecoder"), f"decode_{format}")
     # Some decoders cut off what is outside the image, and some write it: here nothing is outside.
     rows, columns = -(-height // 4) * 4, -(-width // 4) * 4
     bgra = np.frombuffer(decode(blocks, columns, rows), np.uint8).reshape(rows, columns, 4)
     return np.ascontiguousarray(bgra[:height, :width, 2::-1][..., : CHANNELS[format]])
 
 
-def size_in_bytes(format: BlockFormat, width: int, height: int) -> int:
+def size_in_bytes(format: str, width: int, height: int) -> int:
     """Return the number of bytes of the blocks of an image."""
     return -(-width // 4) * -(-height // 4) * BLOCK_BYTES[format]
 
 
 def _bc7(rgba: np.ndarray) -> bytes:
+    etcpak = optional_library("etcpak")
     parameters = etcpak.BC7CompressBlockParams()
     # The default weights are those of perceived colour, which the channels of a map are not.
     parameters.init_linear_weights()
@@ -83,10 +78,11 @@ def _bc7(rgba: np.ndarray) -> bytes:
     return etcpak.compress_bc7(rgba.tobytes(), width, height, parameters)
 
 
-def _quicktex(format: BlockFormat, rgba: np.ndarray) -> bytes:
+def _quicktex(format: str, rgba: np.ndarray) -> bytes:
     height, width, _ = rgba.shape
-    image = quicktex.RawTexture.frombytes(rgba.tobytes(), width, height)
-    encoder = BC1Encoder(_BC1_LEVEL) if format == "bc1" else BC5Encoder(0, 1)
+    module = optional_library(f"quicktex.s3tc.{format}")
+    image = optional_library("quicktex").RawTexture.frombytes(rgba.tobytes(), width, height)
+    encoder = module.BC1Encoder(_BC1_LEVEL) if format == "bc1" else module.BC5Encoder(0, 1)
     return encoder.encode(image).tobytes()
 
 

@@ -7,6 +7,7 @@ from types import ModuleType
 _LIBRARIES = {
     "OpenEXR": "reading EXR files",
     "etcpak": "BC7 compression",
+    "quicktex": "BC1 and BC5 compression",
     "quicktex.s3tc.bc1": "BC1 compression",
     "quicktex.s3tc.bc5": "BC5 compression",
     "texture2ddecoder": "decoding of compressed blocks",

@@ -8,7 +8,6 @@ the distribution of its matrix and that of the texel that a shader decodes.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, UInt8
@@ -21,7 +20,6 @@ from shading.maps.encode import encode, widths_of_entries
 from shading.maps.encodings import decoding
 from shading.maps.total_variation import total_variation
 
-MapFormat = Literal["bc7", "bc1", "rgba8"]
 FORMATS = ("bc7", "bc1", "rgba8")
 # Texels that are decoded at a time, so that memory is bounded
 _CHUNK = 1 << 18
@@ -44,7 +42,7 @@ class EncodedLevel:
     largest: float
 
 
-def mip_entries(entries: Entries) -> list[Entries]:
+def mip_entries(entries: Entries) -> list[np.ndarray]:
     """Return the matrices of all mip levels, the first of which is the map itself.
 
     Raises ValueError for sides that are not powers of two.
@@ -87,7 +85,7 @@ def decoded(encoding: str, channels: Float[np.ndarray, "*texels 3"]) -> Float[np
     return np.concatenate(parts).reshape(*channels.shape[:-1], 4)
 
 
-def encode_level(entries: Entries, encoding: str, format: MapFormat) -> EncodedLevel:
+def encode_level(entries: Entries, encoding: str, format: str) -> EncodedLevel:
     """Return one level in an encoding and a format, read back by an independent decoder.
 
     Raises ValueError for an unknown encoding or format.
@@ -108,7 +106,7 @@ def encode_level(entries: Entries, encoding: str, format: MapFormat) -> EncodedL
     )
 
 
-def write_map(levels: Sequence[EncodedLevel], format: MapFormat) -> bytes:
+def write_map(levels: Sequence[EncodedLevel], format: str) -> bytes:
     """Return a DDS file of levels, the largest first."""
     height, width, _ = levels[0].texels.shape
     return write_coloured_dds([level.data for level in levels], width, height, format)

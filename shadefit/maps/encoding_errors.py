@@ -90,7 +90,9 @@ def worst_texel(
     at = np.concatenate([best, ends])
     value = errors_at(encoding, at, bits)
     for radius in np.geomspace(0.1, 1e-4, rounds):
-        steps = rng.normal(size=(16, *at.shape)) * radius * np.array([high - low, high - low, np.pi])
+        steps = (
+            rng.normal(size=(16, *at.shape)) * radius * np.array([high - low, high - low, np.pi])
+        )
         tried = at + steps
         logs = np.sort(np.clip(tried[..., :2], low, high), axis=-1)
         tried = np.concatenate([logs[..., ::-1], tried[..., 2:]], axis=-1)
@@ -137,7 +139,8 @@ def mixed_error(encoding: str, first: np.ndarray, second: np.ndarray, bits: int 
     channels = []
     for entries in (first, second):
         largest = 2**bits - 1
-        codes = np.rint(encode(encoding, *widths_of_entries(entries)) * largest)
+        widths = (np.asarray(each) for each in widths_of_entries(entries))
+        codes = np.rint(encode(encoding, *widths) * largest)
         channels.append(codes / largest)
     found = decoded(encoding, (channels[0] + channels[1]) / 2)[:3]
     return mixture_distance(first, second, found)

@@ -31,7 +31,7 @@ def total_variation(first: Entries, second: Entries) -> Float[np.ndarray, "*texe
         product = np.where(exchanged, 1 / ratio, ratio)
         root = np.sqrt(np.maximum(half * half - product, 0.0))
         upper = half + root
-        found = _of_eigenvalues(product / upper, upper)
+        found = _of_eigenvalues(np.asarray(product / upper), np.asarray(upper))
     definite = (xx1 > 0) & (xx2 > 0) & (ratio > 0) & (xx1 * yy1 > xy1 * xy1)
     return np.where(definite, found, np.nan)
 
@@ -50,4 +50,4 @@ def _of_eigenvalues(lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     angle = np.where(lower > 1, np.arctan(argument), np.arctanh(np.minimum(argument, 1.0)))
     integral = np.where(below < 1e-14 * above, cotangent / above, angle / np.sqrt(below * above))
     beyond = (level - 1) ** 2 * integral
-    return 2 / np.pi * (first + np.where(level - 1 < 1e-13, 0.0, beyond))
+    return np.asarray(2 / np.pi * (first + np.where(level - 1 < 1e-13, 0.0, beyond)))
