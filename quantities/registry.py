@@ -7,6 +7,7 @@ name of the entry point is that of the quantity. The package is imported when th
 from importlib.metadata import entry_points
 
 from quantities.fuzz import PS, VELVET, G, Q, R
+from quantities.maps import DECODERS
 from quantities.microfacet import (
     GGX_AVERAGE_ALBEDO,
     GGX_BIAS,
@@ -31,6 +32,11 @@ def problems() -> dict[str, Problem]:
 def samplers() -> dict[str, Problem]:
     """Return the samplers and their densities by name. They are exported, but not fitted."""
     return dict(SAMPLERS)
+
+
+def decoders() -> dict[str, Problem]:
+    """Return the decoders of textures by name. They are exported, but not fitted."""
+    return dict(DECODERS)
 
 
 def problem(name: str) -> Problem:

@@ -9,7 +9,8 @@ from pathlib import Path
 
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
-# The quantities in the order of the registry, and the closed forms and samplers to export.
+# The quantities in the order of the registry, and the closed forms, samplers and decoders to
+# export.
 QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 SAMPLERS = (
@@ -22,6 +23,8 @@ SAMPLERS = (
     "sampler/ggx-disk",
     "sampler/ggx-disk-pdf",
 )
+_ENCODINGS = ("published", "stereographic", "quarter-root", "logarithmic")
+DECODERS = tuple(f"decode/aniso-{name}{end}" for name in _ENCODINGS for end in ("", "-matrix"))
 
 
 def complete_quantity(incomplete: str) -> list[str]:
@@ -40,8 +43,8 @@ def complete_table(incomplete: str) -> list[str]:
 
 
 def complete_shader(incomplete: str) -> list[str]:
-    """Complete the name of a table, a closed form or a sampler: what can be exported as code."""
-    others = [name for name in (*EXACT, *SAMPLERS) if name.startswith(incomplete)]
+    """Complete the name of a table, closed form, sampler or decoder: what is exported as code."""
+    others = [name for name in (*EXACT, *SAMPLERS, *DECODERS) if name.startswith(incomplete)]
     return [*complete_table(incomplete), *others]
 
 

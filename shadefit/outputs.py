@@ -249,6 +249,27 @@ class NdfOutput(_Output):
     files: list[str]
 
 
+class MapLevel(Part):
+    """A mip level of a map, and the total variation between its lobes and the decoded ones."""
+
+    width: Count
+    height: Count
+    bytes: Count
+    mean: Size
+    percentile_99: Size
+    largest: Size
+
+
+class MapsEncodeOutput(_Output):
+    """`shadefit maps encode`."""
+
+    command: Literal["maps encode"] = "maps encode"
+    encoding: str
+    format: str
+    levels: list[MapLevel]
+    files: list[str]
+
+
 class RenderOutput(_Output):
     """`shadefit render`; with --sweep there are no `images`."""
 
@@ -271,6 +292,7 @@ Output = Annotated[
     | CostOutput
     | AmbientOutput
     | NdfOutput
+    | MapsEncodeOutput
     | RenderOutput,
     Field(discriminator="command"),
 ]

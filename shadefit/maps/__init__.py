@@ -1,0 +1,1 @@
+"""Maps of anisotropic roughness: whole images, their mip levels, files and errors."""

@@ -1,0 +1,1 @@
+"""Maps of anisotropic GGX roughness: formulas of one texel."""
