@@ -10,7 +10,8 @@ from pathlib import Path
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
 # The quantities in the order of the registry, and the closed forms and samplers to export.
-QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX)
+_MAPS = ("sggx-filter", "sggx-filter-axes")
+QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 SAMPLERS = (
     "sampler/ggx-upper",
