@@ -22,9 +22,7 @@ GROUP = "shadefit.problems"
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
 _MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
-_PROBLEMS: dict[str, Problem] = {
-    each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS)
-}
+_PROBLEMS: dict[str, Problem] = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS)}
 
 
 def problems() -> dict[str, Problem]:

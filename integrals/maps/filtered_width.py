@@ -105,9 +105,7 @@ def axis_widening(along: Scalar, across: Scalar, *, step: float = WIDE_STEP) -> 
     w₂ is w₁(u₂, u₁).
     """
     along, across = jnp.asarray(along, dtype=float), jnp.asarray(across, dtype=float)
-    return checked_steps(
-        lambda each: axis_widenings_rule(along, across, each)[0], step, _ROUNDING
-    )
+    return checked_steps(lambda each: axis_widenings_rule(along, across, each)[0], step, _ROUNDING)
 
 
 def axis_widening_by_sampling(

@@ -51,7 +51,7 @@ def filter_form(*, above: int, below: int) -> Form:
         range(below + 1),
         name="quotient-sggx-filter",
         times=lambda share: share,
-        plus=lambda: 1,
+        plus=lambda: 1.0,
     )
     return replace(form, shape={"above": above, "below": below})
 
@@ -64,7 +64,7 @@ def axes_form(*, numerator: Sequence, denominator: Sequence) -> Form:
         [pair for pair in numerator if pair != (0, 0)],
         [(0, 0), *denominator],
         name="quotient-sggx-filter-axes",
-        plus=lambda: 1,
+        plus=lambda: 1.0,
     )
     shape = {"numerator": list(map(list, numerator)), "denominator": list(map(list, denominator))}
     return replace(form, shape=shape)
