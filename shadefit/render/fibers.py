@@ -1,6 +1,5 @@
 """The directions in which the fibres of an image lean."""
 
-import io
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +10,7 @@ EVEN, CRUSHED = "even", "crushed"
 # Crushed velvet is a sum of waves: their number, their shortest and longest length in units of the
 # scene, and the largest turn of a fibre in radians.
 _WAVES, _SHORTEST, _LONGEST, _TURN = 24, 0.3, 1.1, 1.3
-_MAX_BYTES = 64 << 20
-# The largest width and height of a map in pixels. A small compressed file can declare a huge image,
-# which would fill the memory.
+# The largest width and height of a map in pixels
 _MAX_EDGE = 4096
 
 
@@ -49,30 +46,16 @@ def _crushed(position: np.ndarray) -> np.ndarray:
 
 def _read_map(path: Path) -> np.ndarray:
     """Return red and green (height, width, 2) of a PNG file, mapped to −1 … 1."""
-    from matplotlib import image  # noqa: PLC0415
-    from PIL.PngImagePlugin import PngImageFile  # noqa: PLC0415
+    from shadefit.images import read_image  # noqa: PLC0415
+    from shadefit.images.colour_space import LINEAR  # noqa: PLC0415
 
     try:
-        if path.stat().st_size > _MAX_BYTES:
-            raise ValueError(f"fibers: {path} is larger than {_MAX_BYTES} bytes")
-        data = path.read_bytes()
-        # This reads the header only, no pixels.
-        width, height = PngImageFile(io.BytesIO(data)).size
-        if max(width, height) > _MAX_EDGE:
-            raise ValueError(
-                f"fibers: {path} has {width}×{height} pixels: allowed are {_MAX_EDGE} an edge"
-            )
-        pixels = image.imread(io.BytesIO(data), format="png")
-    except OSError as error:
-        reason = error.strerror or "it is no PNG image"
-        raise ValueError(
-            f"fibers: {path}: {reason}; allowed: {EVEN}, {CRUSHED}, or a PNG file"
-        ) from None
-    except SyntaxError:
-        raise ValueError(f"fibers: {path} is no PNG image") from None
-    if pixels.ndim != 3:
+        pixels = read_image(path, LINEAR, _MAX_EDGE).pixels
+    except ValueError as error:
+        raise ValueError(f"fibers: {error}; allowed: {EVEN}, {CRUSHED}, or a PNG file") from None
+    if pixels.shape[2] < 2:
         raise ValueError(f"fibers: {path} has no red and green channels")
-    return 2 * np.asarray(pixels[..., :2], float) - 1
+    return 2 * pixels[..., :2].astype(float) - 1
 
 
 def _angles_from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:

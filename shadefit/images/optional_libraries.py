@@ -1,0 +1,25 @@
+"""Libraries of the extra `maps`, which are imported only where they are used."""
+
+import importlib
+from types import ModuleType
+
+# A module, and what it is for.
+_LIBRARIES = {
+    "OpenEXR": "reading EXR files",
+    "etcpak": "BC7 compression",
+    "quicktex.s3tc.bc1": "BC1 compression",
+    "quicktex.s3tc.bc5": "BC5 compression",
+    "texture2ddecoder": "decoding of compressed blocks",
+}
+
+
+def optional_library(module: str) -> ModuleType:
+    """Return a module of the extra `maps`. Raises ValueError that says what to install."""
+    purpose = _LIBRARIES[module]
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise ValueError(
+            f"{purpose} needs the library {module.partition('.')[0]}: "
+            "install it by pip install 'shadefit[maps]'"
+        ) from None
