@@ -20,6 +20,7 @@ from shadefit.commands.export import export
 from shadefit.commands.figures import figures
 from shadefit.commands.fit import fit
 from shadefit.commands.list import list_tables
+from shadefit.commands.maps import maps
 from shadefit.commands.ndf import ndf
 from shadefit.commands.new import new
 from shadefit.commands.refit import refit
@@ -143,6 +144,7 @@ _add(
     "Examples: shadefit report --out /tmp/report.html; "
     "shadefit report -p examples/soft_step.py /tmp/tables/soft.json",
 )
+app.add_typer(maps, name="maps")
 _add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
 
 

@@ -140,8 +140,8 @@ def weak_bumps(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
 
 
 def strong_bumps(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """Bumps of the rms slope 0.6 with α = 0.2."""
-    return bumps(size, seed, slope=0.6, width=0.2)
+    """Bumps of the rms slope 0.85 with α = 0.2."""
+    return bumps(size, seed, slope=0.85, width=0.2)
 
 
 MAPS: dict[str, Callable[[int, int], tuple[Slopes, np.ndarray]]] = {

@@ -63,7 +63,7 @@ def footprint_grid(
     cover = np.mean(spread, axis=0) + 2 * np.mean([x * x, x * y, y * y], axis=1)
     first = np.sqrt(cover[0])
     root = np.array([[first, 0], [cover[1] / first, np.sqrt(cover[2] - (cover[1] / first) ** 2)]])
-    slopes = middle + unit_slopes(*grid) @ root.T
+    slopes = middle + unit_slopes(1, *grid)[0] @ root.T
     cells = 1 / (len(slopes) * slope_density(slopes, middle, cover))
     density = np.zeros(len(slopes))
     for start in range(0, len(mean), _LOBES):
