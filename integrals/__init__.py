@@ -25,6 +25,8 @@ from integrals.fuzz.ps import PS as PS
 from integrals.fuzz.q import Q as Q
 from integrals.fuzz.r import R as R
 from integrals.fuzz.velvet import VELVET as VELVET
+from integrals.maps.references import SGGX_FILTER as SGGX_FILTER
+from integrals.maps.references import SGGX_FILTER_AXES as SGGX_FILTER_AXES
 from integrals.microfacet.references import GGX_AVERAGE_ALBEDO as GGX_AVERAGE_ALBEDO
 from integrals.microfacet.references import GGX_BIAS as GGX_BIAS
 from integrals.microfacet.references import GGX_DIRECTIONAL_ALBEDO as GGX_DIRECTIONAL_ALBEDO
@@ -42,4 +44,5 @@ from integrals.sources import sphere as sphere
 
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
-REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS)}
+_MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
+REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS)}

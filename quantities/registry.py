@@ -7,7 +7,7 @@ name of the entry point is that of the quantity. The package is imported when th
 from importlib.metadata import entry_points
 
 from quantities.fuzz import PS, VELVET, G, Q, R
-from quantities.maps import DECODERS
+from quantities.maps import DECODERS, SGGX_FILTER, SGGX_FILTER_AXES
 from quantities.microfacet import (
     GGX_AVERAGE_ALBEDO,
     GGX_BIAS,
@@ -21,7 +21,8 @@ GROUP = "shadefit.problems"
 
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
-_PROBLEMS: dict[str, Problem] = {each.name: each for each in (*_FUZZ, *_MICROFACETS)}
+_MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
+_PROBLEMS: dict[str, Problem] = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS)}
 
 
 def problems() -> dict[str, Problem]:

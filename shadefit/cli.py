@@ -20,6 +20,7 @@ from shadefit.commands.export import export
 from shadefit.commands.figures import figures
 from shadefit.commands.fit import fit
 from shadefit.commands.list import list_tables
+from shadefit.commands.maps import maps
 from shadefit.commands.maps_encode import encode as maps_encode
 from shadefit.commands.ndf import ndf
 from shadefit.commands.new import new
@@ -145,17 +146,13 @@ _add(
     "Examples: shadefit report --out /tmp/report.html; "
     "shadefit report -p examples/soft_step.py /tmp/tables/soft.json",
 )
-_add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
-
-maps = typer.Typer(
-    help="Maps of anisotropic roughness: encode them as textures.", no_args_is_help=True
-)
-app.add_typer(maps, name="maps")
 maps.command(
     "encode",
     epilog="Example: shadefit maps encode along.png across.png direction.png "
     "--encoding quarter-root -o aniso.dds",
 )(maps_encode)
+app.add_typer(maps, name="maps")
+_add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
 
 
 @app.callback()

@@ -9,9 +9,10 @@ from pathlib import Path
 
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
+_MAPS = ("sggx-filter", "sggx-filter-axes")
 # The quantities in the order of the registry, and the closed forms, samplers and decoders to
 # export.
-QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX)
+QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 SAMPLERS = (
     "sampler/ggx-upper",

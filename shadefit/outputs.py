@@ -270,6 +270,45 @@ class MapsEncodeOutput(_Output):
     files: list[str]
 
 
+class MapLevel(Part):
+    """One level of a mip chain, and its files of normals and of anisotropic roughness."""
+
+    width: Count
+    height: Count
+    normal: str
+    aniso: str
+
+
+class MapsFilterOutput(_Output):
+    """`shadefit maps filter`: the levels from the largest to that of one texel."""
+
+    command: Literal["maps-filter"] = "maps-filter"
+    method: str
+    convention: str
+    levels: list[MapLevel]
+
+
+class MapErrors(Part):
+    """Errors of one filter on one map; the method 'best' is the best single lobe.
+
+    `radiance` is the rms error of a lit plane's radiance by its mean.
+    """
+
+    map: str
+    method: str
+    total_variation: Size
+    radiance: Size
+
+
+class MapsErrorsOutput(_Output):
+    """`shadefit maps errors`: means over the footprints of each map."""
+
+    command: Literal["maps-errors"] = "maps-errors"
+    footprints: Count
+    seed: Count
+    errors: list[MapErrors]
+
+
 class RenderOutput(_Output):
     """`shadefit render`; with --sweep there are no `images`."""
 
@@ -293,6 +332,8 @@ Output = Annotated[
     | AmbientOutput
     | NdfOutput
     | MapsEncodeOutput
+    | MapsFilterOutput
+    | MapsErrorsOutput
     | RenderOutput,
     Field(discriminator="command"),
 ]

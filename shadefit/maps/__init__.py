@@ -1,1 +1,1 @@
-"""Maps of anisotropic roughness: whole images, their mip levels, files and errors."""
+"""Maps of anisotropic GGX lobes: filters for mip chains, encodings, synthetic maps, and errors."""

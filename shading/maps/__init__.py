@@ -1,1 +1,1 @@
-"""Maps of anisotropic GGX roughness: formulas of one texel."""
+"""Formulas of one texel of material maps: GGX lobes about mapped normals as SGGX matrices."""
