@@ -17,7 +17,8 @@ evaluated: `jax.config.update("jax_enable_x64", True)`.
 * Quantities: `problem(name)`, `problems()` and `register(problem)`. `CallingConvention`,
   `Argument`, `PlotHints` and `AxisHint` say how one is called and drawn.
 * Distributions of microfacet normals: `fit_ndf` fits a piecewise-linear one to an `analytic_ndf` or
-  a `measured_ndf`, and returns an `NdfFit`.
+  a `measured_ndf`, and returns an `NdfFit`. `fit_blend` fits a blend of two to an anisotropic
+  `named_ndf`, and returns a `BlendFit`.
 * Tables: `load(name)` returns the fitted form of a table, `resolve(name)` an `Entry` with the table
   and its quantity. `table_of(fit, command)` makes a `Table` of a fit.
 * Code: `source_file` returns the shader code of an entry, and `exported_values` what it computes.
@@ -70,10 +71,13 @@ if TYPE_CHECKING:
     from quantities import register as register
     from quantities.calling_convention import Argument as Argument
     from quantities.calling_convention import CallingConvention as CallingConvention
+    from quantities.piecewise.blend_fit import BlendFit as BlendFit
+    from quantities.piecewise.blend_fit import fit_blend as fit_blend
     from quantities.piecewise.fit import NdfFit as NdfFit
     from quantities.piecewise.fit import fit_ndf as fit_ndf
     from quantities.piecewise.targets import analytic_ndf as analytic_ndf
     from quantities.piecewise.targets import measured_ndf as measured_ndf
+    from quantities.piecewise.targets import named_ndf as named_ndf
     from quantities.plot_hints import AxisHint as AxisHint
     from quantities.plot_hints import PlotHints as PlotHints
     from quantities.problem import Published as Published
@@ -102,8 +106,9 @@ _HOMES = {
     "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
     "quantities": ("problem", "problems", "register"),
     "quantities.calling_convention": ("Argument", "CallingConvention"),
+    "quantities.piecewise.blend_fit": ("BlendFit", "fit_blend"),
     "quantities.piecewise.fit": ("NdfFit", "fit_ndf"),
-    "quantities.piecewise.targets": ("analytic_ndf", "measured_ndf"),
+    "quantities.piecewise.targets": ("analytic_ndf", "measured_ndf", "named_ndf"),
     "quantities.plot_hints": ("AxisHint", "PlotHints"),
     "quantities.problem": ("Published",),
     "shadefit.declaration": ("Problem",),
