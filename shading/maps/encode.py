@@ -37,7 +37,8 @@ def widths_of_entries(entries: Texels) -> tuple[Numbers, Numbers, Numbers]:
     half = np.hypot((sxx - syy) / 2, sxy)
     alpha_t = np.sqrt((sxx + syy) / 2 + half)
     alpha_b = np.sqrt(np.maximum(sxx * syy - sxy * sxy, 0.0)) / alpha_t
-    return alpha_t, alpha_b, np.arctan2(2 * sxy, sxx - syy) / 2
+    theta = np.arctan2(2 * sxy, sxx - syy) / 2
+    return np.asarray(alpha_t), np.asarray(alpha_b), np.asarray(theta)
 
 
 def encode(encoding: str, alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) -> Texels:
