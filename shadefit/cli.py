@@ -146,9 +146,7 @@ _add(
 )
 _add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
 
-maps = typer.Typer(
-    help="Maps of anisotropic roughness: encode them as textures.", no_args_is_help=True
-)
+maps = typer.Typer(help="Maps of anisotropic roughness: encode them as textures.")
 app.add_typer(maps, name="maps")
 maps.command(
     "encode",

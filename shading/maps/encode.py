@@ -56,7 +56,9 @@ def encode(encoding: str, alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) ->
             raise ValueError(f"{name} = {widths[wrong].flat[0]:g}: allowed are numbers in (0, 1]")
     if not np.isfinite(given[2]).all():
         raise ValueError("an angle of the tangent is not finite: allowed are angles in radians")
-    return np.clip(_ENCODERS[encoding](*given), 0.0, 1.0)
+    # NumPy makes numbers of arrays without axes.
+    channels = _ENCODERS[encoding](*(np.atleast_1d(each) for each in given))
+    return np.clip(channels, 0.0, 1.0).reshape(*given[0].shape, 3)
 
 
 def _roots(alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) -> tuple[Numbers, ...]:
