@@ -50,9 +50,8 @@ def synthetic_maps() -> dict[str, tuple[np.ndarray, np.ndarray]]:
     distance = (x[..., None] - centres[:, 0]) ** 2 + (y[..., None] - centres[:, 1]) ** 2
     nearest = distance.argmin(axis=-1)
     angles = rng.uniform(-np.pi / 2, np.pi / 2, 200)[nearest]
-    foil = _map(
-        np.full_like(x, 0.2), np.full_like(x, 0.06), angles, *slopes[nearest].T.swapaxes(1, 2)
-    )
+    tilt = np.moveaxis(slopes[nearest], -1, 0)
+    foil = _map(np.full_like(x, 0.2), np.full_like(x, 0.06), angles, *tilt)
     # Spun metal: circles around the centre
     spun = _map(np.full_like(x, 0.4), np.full_like(x, 0.06), np.arctan2(x - 0.5, 0.5 - y))
     return {"brushed": brushed, "twill": twill, "foil": foil, "spun": spun}
@@ -141,10 +140,9 @@ def limitations() -> dict:
         logs = np.broadcast_to(np.log([alpha_t, alpha_b]), (181, 2))
         points = np.column_stack([logs, angles])
         pairs = [
-            [
-                entries_of_widths(*map(np.asarray, (alpha_t, alpha_b, a)))
-                for a in (t, t + np.pi / 18)
-            ]
+            entries_of_widths(
+                np.full(2, alpha_t), np.full(2, alpha_b), t + np.array([0, np.pi / 18])
+            )
             for t in angles[::5]
         ]
         for name in ENCODINGS:

@@ -19,6 +19,7 @@ NAVIGATION = {
     "Mathematics": (
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
         *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
+        "docs/sggx-encodings",
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }
@@ -90,10 +91,13 @@ class Commands(SphinxDirective):
         from shadefit.cli import app  # noqa: PLC0415
 
         names = [command.name for command in app.registered_commands]
+        for group in app.registered_groups:
+            commands = group.typer_instance.registered_commands if group.typer_instance else []
+            names += [f"{group.name} {command.name}" for command in commands]
         return [self._section(str(name)) for name in names]
 
     def _section(self, name: str) -> nodes.section:
-        section = nodes.section(ids=[f"shadefit-{name}"])
+        section = nodes.section(ids=[f"shadefit-{name.replace(' ', '-')}"])
         section += nodes.title(text=name)
         text = help_of(name)
         section += nodes.literal_block(text, text, language="text")
@@ -102,7 +106,7 @@ class Commands(SphinxDirective):
 
 def help_of(name: str) -> str:
     """Return what `shadefit NAME --help` prints."""
-    command = [sys.executable, "-m", "shadefit", name, "--help"]
+    command = [sys.executable, "-m", "shadefit", *name.split(), "--help"]
     plain = {**os.environ, "TERMINAL_WIDTH": "84", "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8"}
     done = subprocess.run(command, capture_output=True, check=True, env=plain, cwd=ROOT)
     lines = done.stdout.decode("utf-8").strip("\n").splitlines()

@@ -139,8 +139,7 @@ def mixed_error(encoding: str, first: np.ndarray, second: np.ndarray, bits: int 
     channels = []
     for entries in (first, second):
         largest = 2**bits - 1
-        widths = (np.asarray(each) for each in widths_of_entries(entries))
-        codes = np.rint(encode(encoding, *widths) * largest)
+        codes = np.rint(encode(encoding, *widths_of_entries(entries)) * largest)
         channels.append(codes / largest)
     found = decoded(encoding, (channels[0] + channels[1]) / 2)[:3]
     return mixture_distance(first, second, found)

@@ -37,7 +37,8 @@ def widths_of_entries(entries: Texels) -> tuple[Numbers, Numbers, Numbers]:
     half = np.hypot((sxx - syy) / 2, sxy)
     alpha_t = np.sqrt((sxx + syy) / 2 + half)
     alpha_b = np.sqrt(np.maximum(sxx * syy - sxy * sxy, 0.0)) / alpha_t
-    return alpha_t, alpha_b, np.arctan2(2 * sxy, sxx - syy) / 2
+    theta = np.arctan2(2 * sxy, sxx - syy) / 2
+    return np.asarray(alpha_t), np.asarray(alpha_b), np.asarray(theta)
 
 
 def encode(encoding: str, alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) -> Texels:
@@ -55,7 +56,9 @@ def encode(encoding: str, alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) ->
             raise ValueError(f"{name} = {widths[wrong].flat[0]:g}: allowed are numbers in (0, 1]")
     if not np.isfinite(given[2]).all():
         raise ValueError("an angle of the tangent is not finite: allowed are angles in radians")
-    return np.clip(_ENCODERS[encoding](*given), 0.0, 1.0)
+    # NumPy makes numbers of arrays without axes.
+    channels = _ENCODERS[encoding](*(np.atleast_1d(each) for each in given))
+    return np.clip(channels, 0.0, 1.0).reshape(*given[0].shape, 3)
 
 
 def _roots(alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) -> tuple[Numbers, ...]:

@@ -155,6 +155,13 @@ def test_bad_options_are_one_line(files, tmp_path, monkeypatch, capsys, change, 
     assert message in error and error.count("\n") == 1
 
 
+def test_the_group_without_a_command_is_one_line(capsys):
+    with pytest.raises(SystemExit) as status:
+        main(["maps"])
+    assert status.value.code == 2
+    assert capsys.readouterr().err == "shadefit: Missing command.\n"
+
+
 @pytest.mark.parametrize(
     ("kind", "message"),
     [
