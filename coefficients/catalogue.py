@@ -16,6 +16,7 @@ from coefficients.packaged import (
     AS_PRINTED,
     EXACT,
     FOLDER,
+    OPERATOR,
     SAMPLER,
     Kind,
     corrected,
@@ -32,7 +33,7 @@ from coefficients.table import Table, read
 from fitting import FittedForm, Form
 from integrals.reference import Axis
 from programs.functions import Function
-from quantities import Problem, problem, problems, samplers
+from quantities import Problem, operators, problem, problems, samplers
 from quantities.calling_convention import renamed
 from quantities.defaults import default_calling
 from quantities.problem import ExactCode
@@ -119,10 +120,10 @@ def resolve(name: str) -> Entry:
     """Return what a name stands for.
 
     It is a table's name, such as 'ps' (refitted), 'published/ps', 'published/ps@printed' or
-    'best/q-9'; the name of a closed form, such as 'exact/ps', or of a sampler, such as
-    'sampler/ggx-upper'; or the path of a table's file. The errata of a published
-    table are applied unless '@printed' follows its name. Raises ValueError for any other name, and
-    for a file that is not a valid table.
+    'best/q-9'; the name of a closed form, such as 'exact/ps', of a sampler, such as
+    'sampler/ggx-upper', or of an operator, such as 'detail/overlay'; or the path of a table's file.
+    The errata of a published table are applied unless '@printed' follows its name. Raises
+    ValueError for any other name, and for a file that is not a valid table.
     """
     declared = _declared()
     if name in declared:
@@ -132,7 +133,9 @@ def resolve(name: str) -> Entry:
     if name.startswith(f"{EXACT}/") and not is_file(name):
         return _closed_form(name)
     if name.startswith(f"{SAMPLER}/") and not is_file(name):
-        return _sampler(name)
+        return _declared_code(name, SAMPLER, "sampler", samplers())
+    if name.startswith(f"{OPERATOR}/") and not is_file(name):
+        return _declared_code(name, OPERATOR, "operator", operators())
     if is_file(name):
         return entry_of(corrected(read(Path(name))), name)
     raise unknown(name, problems(), declared)
@@ -274,8 +277,9 @@ def _closed_form(name: str) -> Entry:
     return Entry(name, "exact", known[name])
 
 
-def _sampler(name: str) -> Entry:
-    known = {f"{SAMPLER}/{key}": owner for key, owner in samplers().items()}
+def _declared_code(name: str, prefix: str, kind: str, owners: dict[str, Problem]) -> Entry:
+    """Return a sampler or an operator: code that is declared as a quantity without forms."""
+    known = {f"{prefix}/{key}": owner for key, owner in owners.items()}
     if name not in known:
-        raise ValueError(f"no sampler is called {name!r}: allowed are {', '.join(known)}")
+        raise ValueError(f"no {kind} is called {name!r}: allowed are {', '.join(known)}")
     return Entry(name, "exact", known[name])

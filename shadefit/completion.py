@@ -22,6 +22,8 @@ SAMPLERS = (
     "sampler/ggx-disk",
     "sampler/ggx-disk-pdf",
 )
+_BLENDS = ("overlay", "smooth-overlay", "symmetric-overlay")
+OPERATORS = tuple(f"detail/{name}{end}" for name in _BLENDS for end in ("", "-inverse"))
 
 
 def complete_quantity(incomplete: str) -> list[str]:
@@ -40,8 +42,8 @@ def complete_table(incomplete: str) -> list[str]:
 
 
 def complete_shader(incomplete: str) -> list[str]:
-    """Complete the name of a table, a closed form or a sampler: what can be exported as code."""
-    others = [name for name in (*EXACT, *SAMPLERS) if name.startswith(incomplete)]
+    """Complete the name of a table, closed form, sampler or operator: what is exported as code."""
+    others = [name for name in (*EXACT, *SAMPLERS, *OPERATORS) if name.startswith(incomplete)]
     return [*complete_table(incomplete), *others]
 
 

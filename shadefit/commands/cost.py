@@ -19,7 +19,7 @@ def cost(
     table: Annotated[
         str,
         typer.Argument(
-            help="A table's name or path, or exact/NAME, or sampler/NAME.",
+            help="A table's name or path, or exact/NAME, sampler/NAME, or detail/NAME.",
             autocompletion=complete_shader,
         ),
     ],

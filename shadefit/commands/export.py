@@ -16,7 +16,7 @@ def export(
         list[str],
         typer.Argument(
             help="Names or paths of tables; for code also exact/NAME, a closed form, and "
-            "sampler/NAME.",
+            "sampler/NAME, or detail/NAME.",
             autocompletion=complete_shader,
         ),
     ],

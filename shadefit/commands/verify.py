@@ -19,7 +19,8 @@ def verify(
     tables: Annotated[
         list[str],
         typer.Argument(
-            help="Names or paths of tables, or exact/NAME, a closed form, or sampler/NAME.",
+            help="Names or paths of tables, or exact/NAME, a closed form, sampler/NAME, or "
+            "detail/NAME.",
             autocompletion=complete_shader,
         ),
     ],
