@@ -15,6 +15,7 @@ from shadefit.commands.bake import bake
 from shadefit.commands.certify import certify
 from shadefit.commands.compare import compare
 from shadefit.commands.cost import cost
+from shadefit.commands.detail import detail
 from shadefit.commands.evaluate import SETTINGS, evaluate
 from shadefit.commands.export import export
 from shadefit.commands.figures import figures
@@ -144,6 +145,7 @@ _add(
     "shadefit report -p examples/soft_step.py /tmp/tables/soft.json",
 )
 _add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
+app.add_typer(detail, name="detail")
 
 
 @app.callback()

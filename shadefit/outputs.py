@@ -218,6 +218,19 @@ class NdfOutput(_Output):
     files: list[str]
 
 
+class DetailOutput(_Output):
+    """`shadefit detail`: errors of the composed image; null without a target, or without error."""
+
+    command: Literal["detail"] = "detail"
+    operator: str
+    colour_space: str
+    encoder: str | None
+    rmse: Size | None
+    psnr: Number | None
+    largest: Size | None
+    files: list[str]
+
+
 class RenderOutput(_Output):
     """`shadefit render`; with --sweep there are no `images`."""
 
@@ -240,6 +253,7 @@ Output = Annotated[
     | CostOutput
     | AmbientOutput
     | NdfOutput
+    | DetailOutput
     | RenderOutput,
     Field(discriminator="command"),
 ]

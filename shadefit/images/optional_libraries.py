@@ -7,8 +7,10 @@ from types import ModuleType
 _LIBRARIES = {
     "OpenEXR": "reading EXR files",
     "etcpak": "BC7 compression",
+    "quicktex": "BC1 compression",
     "quicktex.s3tc.bc1": "BC1 compression",
     "quicktex.s3tc.bc5": "BC5 compression",
+    "skimage.data": "photographs",
     "texture2ddecoder": "decoding of compressed blocks",
 }
 
