@@ -122,7 +122,7 @@ def compose(
     composed = composed_image(
         read_image(source, colour_space), read_image(detail, colour_space), chosen
     )
-    errors: "ComposedErrors | None" = None
+    errors: ComposedErrors | None = None
     if target is not None:
         wanted = read_image(target, colour_space)
         require_same_size(composed, wanted)
