@@ -14,10 +14,9 @@ from coefficients.agreement import fitted_form
 from coefficients.expression import form_of, reference_of, require_same
 from coefficients.packaged import (
     AS_PRINTED,
-    DECODER,
     EXACT,
     FOLDER,
-    SAMPLER,
+    FUNCTIONS,
     Kind,
     corrected,
     files,
@@ -33,7 +32,7 @@ from coefficients.table import Table, read
 from fitting import FittedForm, Form
 from integrals.reference import Axis
 from programs.functions import Function
-from quantities import Problem, decoders, problem, problems, samplers
+from quantities import Problem, functions, problem, problems
 from quantities.calling_convention import renamed
 from quantities.defaults import default_calling
 from quantities.problem import ExactCode
@@ -121,9 +120,10 @@ def resolve(name: str) -> Entry:
 
     It is a table's name, such as 'ps' (refitted), 'published/ps', 'published/ps@printed' or
     'best/q-9'; the name of a closed form, such as 'exact/ps', of a sampler, such as
-    'sampler/ggx-upper', or of a decoder, such as 'decode/aniso-stereographic'; or the path of a
-    table's file. The errata of a published table are applied unless '@printed' follows its name.
-    Raises ValueError for any other name, and for a file that is not a valid table.
+    'sampler/ggx-upper', of a decoder, such as 'decode/aniso-stereographic', or of an operator, such
+    as 'detail/overlay'; or the path of a table's file. The errata of a published table are applied
+    unless '@printed' follows its name. Raises ValueError for any other name, and for a file that is
+    not a valid table.
     """
     declared = _declared()
     if name in declared:
@@ -132,10 +132,9 @@ def resolve(name: str) -> Entry:
         return _kept(name)
     if name.startswith(f"{EXACT}/") and not is_file(name):
         return _closed_form(name)
-    if name.startswith(f"{SAMPLER}/") and not is_file(name):
-        return _declared_code(name, SAMPLER, "sampler", samplers())
-    if name.startswith(f"{DECODER}/") and not is_file(name):
-        return _declared_code(name, DECODER, "decoder", decoders())
+    kind, slash, _ = name.partition("/")
+    if slash and kind in FUNCTIONS and not is_file(name):
+        return _function(name)
     if is_file(name):
         return entry_of(corrected(read(Path(name))), name)
     raise unknown(name, problems(), declared)
@@ -277,9 +276,11 @@ def _closed_form(name: str) -> Entry:
     return Entry(name, "exact", known[name])
 
 
-def _declared_code(name: str, prefix: str, kind: str, owners: dict[str, Problem]) -> Entry:
-    """Return a sampler or a decoder: code that is declared as a quantity without forms."""
-    known = {f"{prefix}/{key}": owner for key, owner in owners.items()}
+def _function(name: str) -> Entry:
+    """Return the entry of a function that is declared as a quantity without forms."""
+    known = functions()
     if name not in known:
-        raise ValueError(f"no {kind} is called {name!r}: allowed are {', '.join(known)}")
+        kind = name.partition("/")[0]
+        allowed = ", ".join(each for each in known if each.startswith(f"{kind}/"))
+        raise ValueError(f"no function is called {name!r}: allowed are {allowed}")
     return Entry(name, "exact", known[name])

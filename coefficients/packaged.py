@@ -15,8 +15,8 @@ FOLDER = Path(__file__).parent / "tables"
 # Behind the name of a published table: the table as it is printed, without corrections.
 AS_PRINTED = "@printed"
 EXACT = "exact"
-SAMPLER = "sampler"
-DECODER = "decode"
+# The first parts of the names of functions that are exported, but not fitted.
+FUNCTIONS = ("sampler", "decode", "detail")
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}

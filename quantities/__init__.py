@@ -5,8 +5,7 @@ quantity in the same way. The registry lists the quantities by name.
 """
 
 from quantities.problem import Problem as Problem
-from quantities.registry import decoders as decoders
+from quantities.registry import functions as functions
 from quantities.registry import problem as problem
 from quantities.registry import problems as problems
 from quantities.registry import register as register
-from quantities.registry import samplers as samplers

@@ -6,6 +6,7 @@ name of the entry point is that of the quantity. The package is imported when th
 
 from importlib.metadata import entry_points
 
+from quantities.detail import OPERATORS
 from quantities.fuzz import PS, VELVET, G, Q, R
 from quantities.maps import DECODERS, SGGX_FILTER, SGGX_FILTER_AXES
 from quantities.microfacet import (
@@ -23,6 +24,9 @@ _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
 _MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
 _PROBLEMS: dict[str, Problem] = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS)}
+# What is exported, but not fitted, by the first part of its name: samplers and their densities,
+# decoders of textures, and operators of detail maps.
+_FUNCTIONS = {"sampler": SAMPLERS, "decode": DECODERS, "detail": OPERATORS}
 
 
 def problems() -> dict[str, Problem]:
@@ -30,14 +34,11 @@ def problems() -> dict[str, Problem]:
     return dict(_PROBLEMS)
 
 
-def samplers() -> dict[str, Problem]:
-    """Return the samplers and their densities by name. They are exported, but not fitted."""
-    return dict(SAMPLERS)
-
-
-def decoders() -> dict[str, Problem]:
-    """Return the decoders of textures by name. They are exported, but not fitted."""
-    return dict(DECODERS)
+def functions() -> dict[str, Problem]:
+    """Return what is exported but not fitted, by its whole name, such as 'sampler/ggx-upper'."""
+    return {
+        f"{kind}/{name}": each for kind, own in _FUNCTIONS.items() for name, each in own.items()
+    }
 
 
 def problem(name: str) -> Problem:

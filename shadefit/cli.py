@@ -15,6 +15,7 @@ from shadefit.commands.bake import bake
 from shadefit.commands.certify import certify
 from shadefit.commands.compare import compare
 from shadefit.commands.cost import cost
+from shadefit.commands.detail import detail
 from shadefit.commands.evaluate import SETTINGS, evaluate
 from shadefit.commands.export import export
 from shadefit.commands.figures import figures
@@ -153,6 +154,7 @@ maps.command(
 )(maps_encode)
 app.add_typer(maps, name="maps")
 _add("ambient", ambient, "Example: shadefit ambient --out /tmp/figures")
+app.add_typer(detail, name="detail")
 
 
 @app.callback()

@@ -10,11 +10,10 @@ from pathlib import Path
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
 _MAPS = ("sggx-filter", "sggx-filter-axes")
-# The quantities in the order of the registry, and the closed forms, samplers and decoders to
-# export.
+# The quantities in the order of the registry, and the closed forms to export.
 QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
-SAMPLERS = (
+_SAMPLERS = (
     "sampler/ggx-upper",
     "sampler/ggx-upper-pdf",
     "sampler/ggx-bounded-cap",
@@ -25,7 +24,11 @@ SAMPLERS = (
     "sampler/ggx-disk-pdf",
 )
 _ENCODINGS = ("published", "stereographic", "quarter-root", "logarithmic")
-DECODERS = tuple(f"decode/aniso-{name}{end}" for name in _ENCODINGS for end in ("", "-matrix"))
+_DECODERS = tuple(f"decode/aniso-{name}{end}" for name in _ENCODINGS for end in ("", "-matrix"))
+_BLENDS = ("overlay", "smooth-overlay", "symmetric-overlay")
+_OPERATORS = tuple(f"detail/{name}{end}" for name in _BLENDS for end in ("", "-inverse"))
+# Functions that are exported, but not fitted.
+FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS)
 
 
 def complete_quantity(incomplete: str) -> list[str]:
@@ -44,8 +47,8 @@ def complete_table(incomplete: str) -> list[str]:
 
 
 def complete_shader(incomplete: str) -> list[str]:
-    """Complete the name of a table, closed form, sampler or decoder: what is exported as code."""
-    others = [name for name in (*EXACT, *SAMPLERS, *DECODERS) if name.startswith(incomplete)]
+    """Complete the name of a table, a closed form, or another function that is exported."""
+    others = [name for name in (*EXACT, *FUNCTIONS) if name.startswith(incomplete)]
     return [*complete_table(incomplete), *others]
 
 

@@ -249,7 +249,7 @@ class NdfOutput(_Output):
     files: list[str]
 
 
-class MapLevel(Part):
+class EncodedLevel(Part):
     """A mip level of a map, and the total variation between its lobes and the decoded ones."""
 
     width: Count
@@ -266,7 +266,7 @@ class MapsEncodeOutput(_Output):
     command: Literal["maps encode"] = "maps encode"
     encoding: str
     format: str
-    levels: list[MapLevel]
+    levels: list[EncodedLevel]
     files: list[str]
 
 
@@ -282,7 +282,7 @@ class MapLevel(Part):
 class MapsFilterOutput(_Output):
     """`shadefit maps filter`: the levels from the largest to that of one texel."""
 
-    command: Literal["maps-filter"] = "maps-filter"
+    command: Literal["maps filter"] = "maps filter"
     method: str
     convention: str
     levels: list[MapLevel]
@@ -303,10 +303,23 @@ class MapErrors(Part):
 class MapsErrorsOutput(_Output):
     """`shadefit maps errors`: means over the footprints of each map."""
 
-    command: Literal["maps-errors"] = "maps-errors"
+    command: Literal["maps errors"] = "maps errors"
     footprints: Count
     seed: Count
     errors: list[MapErrors]
+
+
+class DetailOutput(_Output):
+    """`shadefit detail`: errors of the composed image; null without a target, or without error."""
+
+    command: Literal["detail"] = "detail"
+    operator: str
+    colour_space: str
+    encoder: str | None
+    rmse: Size | None
+    psnr: Number | None
+    largest: Size | None
+    files: list[str]
 
 
 class RenderOutput(_Output):
@@ -334,6 +347,7 @@ Output = Annotated[
     | MapsEncodeOutput
     | MapsFilterOutput
     | MapsErrorsOutput
+    | DetailOutput
     | RenderOutput,
     Field(discriminator="command"),
 ]

@@ -20,6 +20,7 @@ NAVIGATION = {
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
         *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
         "docs/sggx-encodings",
+        "docs/detail-maps",
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }

@@ -19,7 +19,8 @@ def cost(
     table: Annotated[
         str,
         typer.Argument(
-            help="A table's name or path, or exact/NAME, sampler/NAME, or decode/NAME.",
+            help="A table's name or path, or the name of a function, such as exact/ps or "
+            "detail/overlay.",
             autocompletion=complete_shader,
         ),
     ],

@@ -15,8 +15,8 @@ def export(
     tables: Annotated[
         list[str],
         typer.Argument(
-            help="Names or paths of tables; for code also exact/NAME, a closed form, and "
-            "sampler/NAME, or decode/NAME.",
+            help="Names or paths of tables; for code also names of functions, such as exact/ps "
+            "or detail/overlay.",
             autocompletion=complete_shader,
         ),
     ],

@@ -17,11 +17,12 @@ def require_tables(names: Sequence[str]) -> None:
     """
     if _is_extended():
         return
-    from coefficients.packaged import DECODER, EXACT, SAMPLER, is_file, is_packaged, unknown
+    from coefficients.packaged import EXACT, FUNCTIONS, is_file, is_packaged, unknown
 
     for name in names:
-        listed = is_packaged(name) or is_file(name)
-        if not (listed or name.startswith((f"{EXACT}/", f"{SAMPLER}/", f"{DECODER}/"))):
+        kind, slash, _ = name.partition("/")
+        is_code = bool(slash) and kind in (EXACT, *FUNCTIONS)
+        if not (is_code or is_packaged(name) or is_file(name)):
             raise unknown(name, QUANTITIES)
 
 

@@ -19,8 +19,8 @@ def verify(
     tables: Annotated[
         list[str],
         typer.Argument(
-            help="Names or paths of tables, or exact/NAME, a closed form, sampler/NAME, or "
-            "decode/NAME.",
+            help="Names or paths of tables, or names of functions, such as exact/ps or "
+            "detail/overlay.",
             autocompletion=complete_shader,
         ),
     ],

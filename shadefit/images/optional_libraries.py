@@ -10,6 +10,7 @@ _LIBRARIES = {
     "quicktex": "BC1 and BC5 compression",
     "quicktex.s3tc.bc1": "BC1 compression",
     "quicktex.s3tc.bc5": "BC5 compression",
+    "skimage.data": "photographs",
     "texture2ddecoder": "decoding of compressed blocks",
 }
 

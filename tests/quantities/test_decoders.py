@@ -11,12 +11,14 @@ from coefficients.exported_code import trial_of
 from programs import LANGUAGES, check, evaluate, precision_of, toolchain, trace, write_source
 from programs.bounding.compiled import compiler_missing
 from programs.toolchains import verification
-from quantities import decoders, problems, samplers
+from quantities import problems
+from quantities.maps import DECODERS
+from quantities.microfacet import SAMPLERS
 from quantities.maps.definiteness import prove_definite
 from shading.maps.encode import encode
 from shading.maps.encodings import ENCODINGS, LEAST_ALPHA, decode_entries
 
-NAMES = [f"decode/{name}" for name in decoders()]
+NAMES = [f"decode/{name}" for name in DECODERS]
 WIDTHS = [f"decode/aniso-{name}" for name in ENCODINGS]
 
 
@@ -144,8 +146,8 @@ def test_a_decoder_that_is_not_definite_has_no_proof():
 
 
 def test_decoders_are_no_quantities_and_unknown_names_are_refused():
-    assert not set(decoders()) & {*problems(), *samplers()}
-    with pytest.raises(ValueError, match="no decoder is called 'decode/nothing': allowed are deco"):
+    assert not set(DECODERS) & {*problems(), *SAMPLERS}
+    with pytest.raises(ValueError, match="no function is called 'decode/nothing': allowed are de"):
         resolve("decode/nothing")
     with pytest.raises(ValueError, match="has no coefficients"):
         resolve(NAMES[0]).require_table()

@@ -6,8 +6,9 @@ import sys
 import pytest
 
 from coefficients.catalogue import AS_PRINTED, names, resolve
+from coefficients.packaged import FUNCTIONS
 from programs import LANGUAGES
-from quantities import decoders, problems, samplers
+from quantities import functions, problems
 from shadefit import completion
 from shadefit.commands.selection import ALL, selection
 
@@ -16,15 +17,15 @@ def test_the_names_that_are_repeated_are_the_real_ones():
     assert list(completion.QUANTITIES) == list(problems())
     exact = [f"exact/{p.name}" for p in problems().values() if p.exact_code is not None]
     assert list(completion.EXACT) == exact
-    assert list(completion.SAMPLERS) == [f"sampler/{name}" for name in samplers()]
-    assert list(completion.DECODERS) == [f"decode/{name}" for name in decoders()]
+    assert list(completion.FUNCTIONS) == list(functions())
+    assert {name.partition("/")[0] for name in functions()} == set(FUNCTIONS)
 
 
 def test_all_that_there_is_is_completed():
     assert completion.complete_quantity("") == [*problems(), ALL]
     tables = [name for name in names() if not name.endswith(AS_PRINTED)]
     assert sorted(completion.complete_table("")) == sorted(tables)
-    others = [*completion.EXACT, *completion.SAMPLERS, *completion.DECODERS]
+    others = [*completion.EXACT, *completion.FUNCTIONS]
     assert completion.complete_shader("") == [*completion.complete_table(""), *others]
     assert completion.complete_language("") == list(LANGUAGES)
 
