@@ -19,8 +19,7 @@ NAVIGATION = {
     "Mathematics": (
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
         *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
-        "docs/sggx-encodings",
-        "docs/detail-maps",
+        *("docs/sggx-maps", "docs/sggx-encodings", "docs/detail-maps"),
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }

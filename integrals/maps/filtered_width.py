@@ -30,7 +30,7 @@ _NEWTON_STEPS = 6
 # Rounding of sums of about 100 terms, and what the ends of the rule leave out.
 _ROUNDING = 1e-13
 # w(1), the widening of a mirror: x eˣ E₁(x) = ½ has the root x = w/2 = 0.6100578….
-MIRROR = 1.2201155537
+MIRROR = 1.2201155836697488
 
 
 def _logarithmic_newton(residual: Callable[[Array], Array], start: Array, steps: int) -> Array:
@@ -67,7 +67,7 @@ def widening_rule(share: Array, step: float) -> Array:
 
     def residual(w: Array) -> Array:
         x = w / spread
-        return jnp.sum(weights * x * jnp.exp(x) * e1(x)) - 0.5
+        return jnp.sum(weights * x * jnp.exp(x) * jax.vmap(e1)(x)) - 0.5
 
     return _logarithmic_newton(residual, jnp.ones(()), _NEWTON_STEPS)
 

@@ -1,4 +1,4 @@
-"""Libraries of the extra `maps`, which are imported only where they are used."""
+"""Libraries that few users need, which are imported only where they are used."""
 
 import importlib
 from types import ModuleType
@@ -16,7 +16,7 @@ _LIBRARIES = {
 
 
 def optional_library(module: str) -> ModuleType:
-    """Return a module of the extra `maps`. Raises ValueError that says what to install."""
+    """Return one of these modules. Raises ValueError that says what to install."""
     purpose = _LIBRARIES[module]
     try:
         return importlib.import_module(module)

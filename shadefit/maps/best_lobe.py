@@ -35,8 +35,9 @@ def unit_slopes(lobes: int, radii: int, angles: int) -> np.ndarray:
 
 
 def slopes_of_lobes(mean: np.ndarray, spread: np.ndarray, unit: np.ndarray) -> np.ndarray:
-    """Return slopes (…, lobes · samples, 2) of lobes with centres (…, lobes, 2) and Â (…, lobes, 3).
+    """Return slopes (…, lobes · samples, 2) of lobes.
 
+    `mean` (…, lobes, 2) and `spread` (…, lobes, 3) are μ and Â of each lobe.
     `unit` (samples, 2) or (lobes, samples, 2) are slopes of lobes of width 1.
     """
     xx, xy, yy = (spread[..., k, None] for k in range(3))

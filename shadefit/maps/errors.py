@@ -25,8 +25,8 @@ _PLANE = 24
 class FilterErrors:
     """Errors of one filter on one map, averaged over its footprints.
 
-    `total_variation` is ½ ∫ |p − q| of slope densities. `radiance` is the rms error of a lit plane's
-    radiance, relative to its mean.
+    `total_variation` is ½ ∫ |p − q| of slope densities. `radiance` is the rms error of the
+    radiance of a lit plane, relative to its mean.
     """
 
     map: str

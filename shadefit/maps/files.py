@@ -1,7 +1,7 @@
 """Maps of lobes from image files, and mip chains to image files.
 
-Vectors in a file are 'unsigned', v = 2 value − 1, as all PNG files need, or 'signed', v = value. The
-y axis of normals points up ('opengl') or down ('directx') in the picture.
+Vectors in a file are 'unsigned', v = 2 value − 1, as all PNG files need, or 'signed', v = value.
+The y axis of normals points up ('opengl') or down ('directx') in the picture.
 """
 
 from pathlib import Path
@@ -72,7 +72,7 @@ def read_lobe_map(
     require_channels(second, 1, 2, 3)
     require_same_size(first, second)
     along, across = _widths(second, widths)
-    tangent = np.zeros((*along.shape, 2)) + [1.0, 0.0]
+    tangent = np.broadcast_to([1.0, 0.0], (*along.shape, 2))
     if direction is not None:
         third = read_image(direction, colour_space)
         require_channels(third, 2, 3)

@@ -58,8 +58,8 @@ def lobe_map(normals: np.ndarray, roughness: np.ndarray) -> LobeMap:
     """Return a map of lobes in float64 after checks.
 
     Raises ValueError for shapes that differ, sides that are no powers of two, numbers that are not
-    finite, normals that are not unit vectors with z > 0, and roughness that is not positive definite
-    with widths in (0, 1].
+    finite, normals that are not unit vectors with z > 0, and roughness that is not positive
+    definite with widths in (0, 1].
     """
     normals, roughness = np.asarray(normals, float), np.asarray(roughness, float)
     for name, each in (("normals", normals), ("roughness", roughness)):
@@ -211,7 +211,9 @@ def _footprints(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
     return cut.transpose(0, 2, 1, 3, 4).reshape(height // rows, width // columns, -1, size)
 
 
-def _estimated(normals: Normals, roughness: Roughness, _down: int) -> tuple[Normals, Roughness]:
+def _estimated(
+    normals: np.ndarray, roughness: np.ndarray, _down: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Return lobes with the axes of the mean matrix and the mean projected areas along them."""
     matrices = lobe_matrices(normals, roughness)
     xx, xy, xz, yy, yz, zz = np.moveaxis(np.mean(matrices, axis=-2), -1, 0)
@@ -227,7 +229,7 @@ def _estimated(normals: Normals, roughness: Roughness, _down: int) -> tuple[Norm
     return lobes_of_matrices(result)
 
 
-def _best(normals: Normals, roughness: Roughness, down: int) -> tuple[Normals, Roughness]:
+def _best(normals: np.ndarray, roughness: np.ndarray, down: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the best lobes of footprints, from that of the table."""
     matrices = lobe_matrices(normals, roughness)
     mean, spread = slope_moments(matrices)

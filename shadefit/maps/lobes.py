@@ -1,8 +1,8 @@
 """Maps of lobes as arrays: SGGX matrices of all texels, and back to normals and roughness.
 
 `normals` are unit vectors (…, 3) with positive z. `roughness` (…, 3) has A_xx, A_xy and A_yy of
-each texel, in the frame of its normal. `matrices` (…, 6) have the elements xx, xy, xz, yy, yz, zz of
-S. `shading.maps` has the same formulas for one texel.
+each texel, in the frame of its normal. `matrices` (…, 6) have the elements xx, xy, xz, yy, yz, zz
+of S. `shading.maps` has the same formulas for one texel.
 """
 
 import numpy as np
@@ -131,16 +131,12 @@ def _eigenvectors(xx, xy, xz, yy, yz, zz, value) -> Normals:
         (xy * c - xz * yz, xz * xz - a * c, a * yz - xz * xy),
         (b * c - yz * yz, yz * xz - xy * c, xy * yz - b * xz),
     )
-    best, length = None, None
-    for each in products:
-        square = each[0] * each[0] + each[1] * each[1] + each[2] * each[2]
-        if best is None:
-            best, length = list(each), square
-            continue
+    squares = [x * x + y * y + z * z for x, y, z in products]
+    best, length = list(products[0]), squares[0]
+    for each, square in zip(products[1:], squares[1:], strict=True):
         larger = square > length
         length = np.where(larger, square, length)
         best = [np.where(larger, new, old) for new, old in zip(each, best, strict=True)]
-    assert best is not None and length is not None
     vanishing = length <= _TINY**2
     root = np.sqrt(np.where(vanishing, 1, length)) * np.where(best[2] < 0, -1, 1)
     result = np.stack([each / root for each in best], axis=-1)

@@ -17,6 +17,7 @@ from shadefit.maps.lobes import (
     matrices_of_slopes,
     slope_moments,
 )
+from shadefit.maps.tables import widening
 
 # Widths below this are of numerically flat lobes; no division by less.
 _LEAST = 1e-12
@@ -113,8 +114,6 @@ def widened(spread: np.ndarray, covariance: np.ndarray) -> np.ndarray:
 
 def _widenings(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the table's widenings for the relative spreads t₁ and t₂."""
-    from shadefit.maps.tables import widening
-
     shares = along / (1 + along), across / (1 + across)
     return widening(*shares), widening(*shares[::-1])
 

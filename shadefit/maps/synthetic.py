@@ -8,14 +8,16 @@ for `spun`.
 from collections.abc import Callable
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from shadefit.maps.filters import LobeMap
 
 Slopes = np.ndarray
+Values = float | np.ndarray
 
 
-def widths_to_roughness(along: np.ndarray, across: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return the roughness (…, 3) of the widths α_t and α_b, with the tangent at `angle` radians."""
+def widths_to_roughness(along: Values, across: Values, angle: Values) -> np.ndarray:
+    """Return the roughness (…, 3) of widths α_t and α_b; `angle` is that of the tangent."""
     along, across, angle = np.broadcast_arrays(along, across, angle)
     cosine, sine = np.cos(angle), np.sin(angle)
     a, b = along**2, across**2
@@ -44,7 +46,7 @@ def _grid(size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _noise(size: int, rng: np.random.Generator, along: float, across: float) -> np.ndarray:
-    """Return periodic Gaussian noise of variance 1, smoothed over lengths in texels along x and y."""
+    """Return periodic Gaussian noise of variance 1, smooth over lengths in texels."""
     frequency = np.fft.fftfreq(size)
     x, y = frequency[None, :] * along, frequency[:, None] * across
     smooth = np.exp(-2 * np.pi**2 * (x * x + y * y))
@@ -60,14 +62,14 @@ def _differences(height: np.ndarray) -> Slopes:
 
 
 def bumps(size: int, seed: int, *, slope: float, width: float) -> tuple[Slopes, np.ndarray]:
-    """Smooth isotropic bumps with the rms `slope` (of both axes together) and GGX of α = `width`."""
+    """Return smooth bumps of the rms `slope` (both axes together) and GGX of α = `width`."""
     slopes = _differences(_noise(size, np.random.default_rng(seed), 3.0, 3.0))
     slopes = slopes * slope / np.sqrt(np.mean(np.sum(slopes * slopes, axis=-1)))
     return slopes, widths_to_roughness(width, width, np.zeros((size, size)))
 
 
 def weave(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """A twill: threads of 8 texels, two over and two under, each rough across its fibres."""
+    """Return a twill: threads of 8 texels, two over and two under, each rough across its fibres."""
     rng = np.random.default_rng(seed)
     x, y = _grid(size)
     column, row = (x // 8).astype(int), (y // 8).astype(int)
@@ -85,7 +87,7 @@ def weave(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
 
 
 def scratches(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """A polished plane with straight grooves of 2 texels' half width in all directions."""
+    """Return a polished plane with straight grooves of 2 texels' half width in all directions."""
     rng = np.random.default_rng(seed)
     x, y = _grid(size)
     slopes = 0.02 * rng.standard_normal((size, size, 2))
@@ -105,20 +107,18 @@ def scratches(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
 
 
 def foil(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """Crumpled foil: flat facets (Voronoi cells of about 8 × 8 texels) with random tilts."""
+    """Return crumpled foil: flat facets (Voronoi cells of about 8 × 8 texels) with random tilts."""
     rng = np.random.default_rng(seed)
     count = max((size // 8) ** 2, 4)
     sites = rng.uniform(0, size, (count, 2))
     tilts = 0.3 * rng.standard_normal((count, 2))
-    from scipy.spatial import cKDTree
-
     x, y = _grid(size)
-    cell = cKDTree(sites, boxsize=size).query(np.stack([x, y], axis=-1))[1]
+    cell = KDTree(sites, boxsize=size).query(np.stack([x, y], axis=-1))[1]
     return tilts[cell], widths_to_roughness(0.1, 0.1, np.zeros((size, size)))
 
 
 def brushed(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """Brushed metal: streaks along x of 40 × 1 texels, with slopes across them."""
+    """Return brushed metal: streaks along x of 40 × 1 texels, with slopes across them."""
     rng = np.random.default_rng(seed)
     across = 0.2 * _noise(size, rng, 40.0, 0.7)
     slopes = np.stack([0.02 * rng.standard_normal((size, size)), across], axis=-1)
@@ -126,7 +126,7 @@ def brushed(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
 
 
 def spun(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """Spun metal: a flat plane, with the tangent around a centre near the middle of the map."""
+    """Return spun metal: a flat plane, with the tangent around a centre near the middle."""
     rng = np.random.default_rng(seed)
     x, y = _grid(size)
     centre = size * rng.uniform(0.4, 0.6, 2)
@@ -135,12 +135,12 @@ def spun(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
 
 
 def weak_bumps(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """Bumps of the rms slope 0.15 with α = 0.1."""
+    """Return bumps of the rms slope 0.15 with α = 0.1."""
     return bumps(size, seed, slope=0.15, width=0.1)
 
 
 def strong_bumps(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
-    """Bumps of the rms slope 0.85 with α = 0.2."""
+    """Return bumps of the rms slope 0.85 with α = 0.2."""
     return bumps(size, seed, slope=0.85, width=0.2)
 
 

@@ -1,7 +1,5 @@
 """The widening of filtered lobes from its coefficient table, as a function of NumPy arrays."""
 
-import functools
-
 import numpy as np
 
 from coefficients.packaged import packaged_table
@@ -10,15 +8,7 @@ from coefficients.packaged import packaged_table
 WIDENING = "best/sggx-filter-axes-24"
 
 
-@functools.cache
-def _program() -> tuple[list[list], str, list[float]]:
-    table = packaged_table(WIDENING)
-    assert table.expression is not None
-    return (
-        [list(step) for step in table.expression.steps],
-        table.expression.value,
-        list(np.ravel(table.coefficients)),
-    )
+_OPERATIONS = {"add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide}
 
 
 def widening(along: np.ndarray, across: np.ndarray) -> np.ndarray:
@@ -26,11 +16,15 @@ def widening(along: np.ndarray, across: np.ndarray) -> np.ndarray:
 
     The table's expression has only the four basic operations.
     """
-    steps, value, constants = _program()
-    names = {f"c{k}": each for k, each in enumerate(constants)}
-    known = {**names, "along": along, "across": across}
-    operations = {"add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide}
-    for k, (operation, *operands) in enumerate(steps):
-        found = [known[each] if isinstance(each, str) else each for each in operands]
-        known[f"t{k}"] = operations[operation](*found)
-    return known[value]
+    table = packaged_table(WIDENING)
+    constants = enumerate(np.ravel(np.asarray(table.coefficients, float)))
+    known: dict[str, np.ndarray] = {f"c{k}": np.asarray(each) for k, each in constants}
+    known |= {"along": along, "across": across}
+    assert table.expression is not None
+    for k, step in enumerate(table.expression.steps):
+        operation, *operands = (each for each in step)
+        first, second = (
+            known[each] if isinstance(each, str) else np.asarray(each, float) for each in operands
+        )
+        known[f"t{k}"] = _OPERATIONS[str(operation)](first, second)
+    return known[str(table.expression.value)]

@@ -25,7 +25,7 @@ _LOBES = 64
 
 @dataclass(frozen=True)
 class SlopeGrid:
-    """A grid of slopes (points, 2) that covers a footprint, its cells, and the true density there."""
+    """A grid of slopes (points, 2) over a footprint, its cells, and the true density there."""
 
     slopes: np.ndarray
     cells: np.ndarray

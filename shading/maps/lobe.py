@@ -1,19 +1,20 @@
 """A GGX lobe about a mapped normal: its symmetric matrices, its distribution, and its masking.
 
-In the frame M of the normal, the roughness is a symmetric matrix A (2, 2) with the eigenvalues α_t²
-and α_b² along the tangent and the bitangent. It is given by three numbers (A_xx, A_xy, A_yy), called
-`roughness` here. The SGGX matrix of the lobe is S = M [A 0; 0 1] Mᵀ. No formula of this module needs
-the eigenvectors.
+In the frame M of the normal, the roughness is a symmetric matrix A (2, 2). Its eigenvalues are α_t²
+and α_b², along the tangent and the bitangent. It is given by three numbers (A_xx, A_xy, A_yy),
+called `roughness` here. The SGGX matrix of the lobe is S = M [A 0; 0 1] Mᵀ. No formula of this
+module needs the eigenvectors.
 """
 
 import jax.numpy as jnp
 from jax import Array
+from jax.typing import ArrayLike
 from jaxtyping import Float
 
 from shading.maps.frame import normal_frame
 from shading.types import Matrix, Scalar, Vector
 
-Roughness = Float[Array, "3"]
+Roughness = Float[ArrayLike, "3"]
 
 
 def roughness_matrix(along: Scalar, across: Scalar, angle: Scalar) -> Array:
@@ -69,10 +70,10 @@ def lobe_masking(direction: Vector, roughness: Roughness) -> Array:
 
 
 def lobe_brdf(view: Vector, light: Vector, roughness: Roughness) -> Array:
-    """Return D(h) G2/(4μν) = D(h)/(2 (μσ(i) + νσ(o))) with height-correlated masking, per steradian.
+    """Return D(h) G2/(4μν) = D(h)/(2 (μσ(i) + νσ(o))) per steradian; G2 is height-correlated.
 
-    The unit vectors o = `view` and i = `light` are in the frame of the normal. The value is 0 unless
-    both are above the surface.
+    The unit vectors o = `view` and i = `light` are in the frame of the normal. The value is 0
+    unless both are above the surface.
     """
     o, i = jnp.asarray(view), jnp.asarray(light)
     above = (o[2] > 0) & (i[2] > 0)
@@ -104,7 +105,7 @@ def slope_moments(matrix: Matrix) -> tuple[Array, Array]:
     return mean, scaled[:2, :2] - jnp.outer(mean, mean)
 
 
-def matrix_of_slopes(mean: Float[Array, "2"], spread: Float[Array, "2 2"]) -> Array:
+def matrix_of_slopes(mean: Float[ArrayLike, "2"], spread: Float[ArrayLike, "2 2"]) -> Array:
     """Return [[Â + μμᵀ, μ], [μᵀ, 1]] (3, 3), the inverse of `slope_moments` up to a factor."""
     mean, spread = jnp.asarray(mean), jnp.asarray(spread)
     upper = jnp.concatenate([spread + jnp.outer(mean, mean), mean[:, None]], axis=1)

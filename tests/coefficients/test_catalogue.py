@@ -21,7 +21,10 @@ from programs import trace
 from quantities import problem, problems
 
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
-PUBLISHED = ("ps", "g", "q", "r", "ggx-directional-albedo", "ggx-scale", "ggx-bias")
+_GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias")
+PUBLISHED = ("ps", "g", "q", "r", *_GGX, "sggx-filter", "sggx-filter-axes")
+# Constants of two sources are in print for these.
+SECOND = ("sggx-filter-lean", "sggx-filter-axes-lean")
 CLOSED_FORMS = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 
 
@@ -37,9 +40,9 @@ def test_every_listed_name_resolves():
     assert list(listed) == [
         "g",
         *("ggx-average-albedo", "ggx-bias", "ggx-directional-albedo", "ggx-scale"),
-        *("ps", "q", "r", "velvet"),
+        *("ps", "q", "r", "sggx-filter", "sggx-filter-axes", "velvet"),
         *names_of_best(),
-        *sorted(f"published/{each}" for each in PUBLISHED),
+        *(f"published/{each}" for each in sorted((*PUBLISHED, *SECOND), key=lambda x: f"{x}.json")),
         "published/ps@printed",
     ]
     for name in listed:

@@ -41,6 +41,8 @@ POINTS = {
     "ggx-scale": ["--mu", "0.3", "--alpha", "0.4"],
     "ggx-bias": ["--mu", "0.3", "--alpha", "0.4"],
     "ggx-average-albedo": ["--alpha", "0.4"],
+    "sggx-filter": ["--share", "0.4"],
+    "sggx-filter-axes": ["--along", "0.4", "--across", "0.2"],
 }
 
 
