@@ -207,7 +207,7 @@ def test_the_code_draws_visible_normals_of_their_density(name, view):
 @pytest.mark.parametrize("theta_o", [0.9, 1.55])
 @pytest.mark.parametrize("source", ["random", "ggx:0.1"])
 def test_the_polar_angle_of_the_code_inverts_the_visible_area(source, theta_o):
-    """The part of the visible area below what is drawn is u1, to 1e-6, in 7 steps."""
+    """The part of the visible area below what is drawn is u1, after 7 steps."""
     if source == "random":
         ndf = random_profile(3, 6, "cos2")
     else:

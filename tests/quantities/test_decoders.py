@@ -13,8 +13,8 @@ from programs.bounding.compiled import compiler_missing
 from programs.toolchains import verification
 from quantities import problems
 from quantities.maps import DECODERS
-from quantities.microfacet import SAMPLERS
 from quantities.maps.definiteness import prove_definite
+from quantities.microfacet import SAMPLERS
 from shading.maps.encode import encode
 from shading.maps.encodings import ENCODINGS, LEAST_ALPHA, decode_entries
 
