@@ -15,12 +15,15 @@ from quantities.microfacet import (
     SAMPLERS,
 )
 from quantities.problem import Problem
+from quantities.skin import SKIN_QUANTITIES
 
 GROUP = "shadefit.problems"
 
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
-_PROBLEMS: dict[str, Problem] = {each.name: each for each in (*_FUZZ, *_MICROFACETS)}
+_PROBLEMS: dict[str, Problem] = {
+    each.name: each for each in (*_FUZZ, *_MICROFACETS, *SKIN_QUANTITIES)
+}
 
 
 def problems() -> dict[str, Problem]:

@@ -9,8 +9,13 @@ from pathlib import Path
 
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
+_SKIN = tuple(
+    f"skin-{surface}-{channel}"
+    for surface in ("cylinder", "sphere")
+    for channel in ("red", "green", "blue")
+)
 # The quantities in the order of the registry, and the closed forms and samplers to export.
-QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX)
+QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_SKIN)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 SAMPLERS = (
     "sampler/ggx-upper",
