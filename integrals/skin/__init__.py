@@ -1,7 +1,7 @@
 """Exact values of light that is scattered below curved skin.
 
-`lobes` has one Gaussian on a ring and a sphere, by quadrature, `lobe_series` the same as Fourier and
-Legendre series, and `sampling` the same by random points. `scattering` adds the Gaussians of a
+`lobes` has one Gaussian on a ring and a sphere, by quadrature, `lobe_series` the same by Fourier
+and Legendre series, and `sampling` the same by random points. `scattering` adds the Gaussians of a
 profile up, and `harmonics` has the factors of light in spherical harmonics.
 """
 

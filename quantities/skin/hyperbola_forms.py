@@ -2,12 +2,13 @@
 
 q = √(c² + (aκ)²) is |c| with a rounded kink, whose width is proportional to the curvature κ. With a
 second, wider one Q the form is D = (c + q)/2 + N/B, where the sum N has monomials of κ times 1, c,
-c², c⁴, q and p = Q − q. p vanishes at κ = 0. All other terms have a factor κ, so the form is exactly
-max(0, c) at κ = 0, whatever its coefficients.
+c², c⁴, q and p = Q − q. p vanishes at κ = 0. All other terms have a factor κ, so the form is
+exactly max(0, c) at κ = 0, whatever its coefficients.
 """
 
 import functools
 from collections.abc import Iterator
+from typing import Any
 
 import jax.numpy as jnp
 from jax import Array
@@ -68,7 +69,10 @@ def hyperbola_form(
             if i in sums:
                 total = total + factor * sums[i]
         if below:
-            under = {(0,): ONE, **{(j + 1,): c[size + j] for j in range(below)}}
+            under: dict[tuple[int, ...], Any] = {
+                (0,): ONE,
+                **{(j + 1,): c[size + j] for j in range(below)},
+            }
             total = total / nested_horner(under, (k,))
         return 0.5 * (x + q) + total
 
@@ -78,7 +82,7 @@ def hyperbola_form(
     above = " + ".join(
         sum_text({(j,): _product(name, i)}, ("κ",)) for (i, j), name in shown.items()
     )
-    under = sum_text({(0,): 1.0, **{(j + 1,): b for j, b in enumerate(bottom)}}, ("κ",))
+    shown_below = sum_text({(0,): 1.0, **{(j + 1,): b for j, b in enumerate(bottom)}}, ("κ",))
     return Form(
         name="hyperbola-skin",
         equation=equation_of(
@@ -88,7 +92,7 @@ def hyperbola_form(
                 f"q = √(c² + {narrow * narrow!r}·κ²)",
                 f"p = √(c² + {wide * wide!r}·κ²) − q",
                 f"N = {above}",
-                *([f"B = {under}"] if below else []),
+                *([f"B = {shown_below}"] if below else []),
             ],
         ),
         reference=reference,

@@ -52,10 +52,11 @@ def one_line(caught) -> str:
 
 
 GGX = ["ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo"]
+SKIN = [f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("red", "green", "blue")]
 
 
 def test_the_quantities_are_known_in_their_order():
-    assert list(problems()) == list(REFERENCES) == ["ps", "g", "q", "r", "velvet", *GGX]
+    assert list(problems()) == list(REFERENCES) == ["ps", "g", "q", "r", "velvet", *GGX, *SKIN]
     for name, each in problems().items():
         assert problem(name) is each
         assert each.name == name
@@ -68,7 +69,7 @@ def test_the_quantities_are_known_in_their_order():
 def test_an_unknown_quantity_is_refused_in_one_line(name):
     with pytest.raises(ValueError) as caught:
         problem(name)
-    every = ", ".join(["ps, g, q, r, velvet", *GGX])
+    every = ", ".join(["ps, g, q, r, velvet", *GGX, *SKIN])
     assert one_line(caught) == f"no quantity is called {name!r}: allowed are {every}"
 
 

@@ -41,6 +41,11 @@ POINTS = {
     "ggx-scale": ["--mu", "0.3", "--alpha", "0.4"],
     "ggx-bias": ["--mu", "0.3", "--alpha", "0.4"],
     "ggx-average-albedo": ["--alpha", "0.4"],
+    **{
+        f"skin-{surface}-{channel}": ["--cosine", "0.2", "--curvature", "0.1"]
+        for surface in ("cylinder", "sphere")
+        for channel in ("red", "green", "blue")
+    },
 }
 
 
