@@ -36,6 +36,7 @@ from integrals.reference import Estimate as Estimate
 from integrals.reference import Reference as Reference
 from integrals.reference_of_source import make_reference as make_reference
 from integrals.sampling import Sampling as Sampling
+from integrals.skin.references import SKIN_REFERENCES as SKIN_REFERENCES
 from integrals.sources import Source as Source
 from integrals.sources import closed_form as closed_form
 from integrals.sources import hemisphere as hemisphere
@@ -45,4 +46,4 @@ from integrals.sources import sphere as sphere
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
 _MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
-REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS)}
+REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS, *SKIN_REFERENCES)}

@@ -10,8 +10,13 @@ from pathlib import Path
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
 _MAPS = ("sggx-filter", "sggx-filter-axes")
+_SKIN = tuple(
+    f"skin-{surface}-{channel}"
+    for surface in ("cylinder", "sphere")
+    for channel in ("red", "green", "blue")
+)
 # The quantities in the order of the registry, and the closed forms to export.
-QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS)
+QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS, *_SKIN)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 _SAMPLERS = (
     "sampler/ggx-upper",

@@ -53,10 +53,13 @@ def one_line(caught) -> str:
 
 GGX = ["ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo"]
 MAPS = ["sggx-filter", "sggx-filter-axes"]
+SKIN = [f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("red", "green", "blue")]
 
 
 def test_the_quantities_are_known_in_their_order():
-    assert list(problems()) == list(REFERENCES) == ["ps", "g", "q", "r", "velvet", *GGX, *MAPS]
+    assert (
+        list(problems()) == list(REFERENCES) == ["ps", "g", "q", "r", "velvet", *GGX, *MAPS, *SKIN]
+    )
     for name, each in problems().items():
         assert problem(name) is each
         assert each.name == name
@@ -69,7 +72,7 @@ def test_the_quantities_are_known_in_their_order():
 def test_an_unknown_quantity_is_refused_in_one_line(name):
     with pytest.raises(ValueError) as caught:
         problem(name)
-    every = ", ".join(["ps, g, q, r, velvet", *GGX, *MAPS])
+    every = ", ".join(["ps, g, q, r, velvet", *GGX, *MAPS, *SKIN])
     assert one_line(caught) == f"no quantity is called {name!r}: allowed are {every}"
 
 

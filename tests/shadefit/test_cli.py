@@ -43,6 +43,11 @@ POINTS = {
     "ggx-average-albedo": ["--alpha", "0.4"],
     "sggx-filter": ["--share", "0.4"],
     "sggx-filter-axes": ["--along", "0.4", "--across", "0.2"],
+    **{
+        f"skin-{surface}-{channel}": ["--cosine", "0.2", "--curvature", "0.1"]
+        for surface in ("cylinder", "sphere")
+        for channel in ("red", "green", "blue")
+    },
 }
 
 
