@@ -14,6 +14,7 @@ from coefficients.agreement import fitted_form
 from coefficients.expression import form_of, reference_of, require_same
 from coefficients.packaged import (
     AS_PRINTED,
+    CURVATURE,
     EXACT,
     FOLDER,
     SAMPLER,
@@ -32,7 +33,7 @@ from coefficients.table import Table, read
 from fitting import FittedForm, Form
 from integrals.reference import Axis
 from programs.functions import Function
-from quantities import Problem, problem, problems, samplers
+from quantities import Problem, curvatures, problem, problems, samplers
 from quantities.calling_convention import renamed
 from quantities.defaults import default_calling
 from quantities.problem import ExactCode
@@ -120,9 +121,9 @@ def resolve(name: str) -> Entry:
 
     It is a table's name, such as 'ps' (refitted), 'published/ps', 'published/ps@printed' or
     'best/q-9'; the name of a closed form, such as 'exact/ps', or of a sampler, such as
-    'sampler/ggx-upper'; or the path of a table's file. The errata of a published
-    table are applied unless '@printed' follows its name. Raises ValueError for any other name, and
-    for a file that is not a valid table.
+    'sampler/ggx-upper', or of curvature, such as 'curvature/effective'; or the path of a table's
+    file. The errata of a published table are applied unless '@printed' follows its name. Raises
+    ValueError for any other name, and for a file that is not a valid table.
     """
     declared = _declared()
     if name in declared:
@@ -133,6 +134,8 @@ def resolve(name: str) -> Entry:
         return _closed_form(name)
     if name.startswith(f"{SAMPLER}/") and not is_file(name):
         return _sampler(name)
+    if name.startswith(f"{CURVATURE}/") and not is_file(name):
+        return _curvature(name)
     if is_file(name):
         return entry_of(corrected(read(Path(name))), name)
     raise unknown(name, problems(), declared)
@@ -278,4 +281,11 @@ def _sampler(name: str) -> Entry:
     known = {f"{SAMPLER}/{key}": owner for key, owner in samplers().items()}
     if name not in known:
         raise ValueError(f"no sampler is called {name!r}: allowed are {', '.join(known)}")
+    return Entry(name, "exact", known[name])
+
+
+def _curvature(name: str) -> Entry:
+    known = {f"{CURVATURE}/{key}": owner for key, owner in curvatures().items()}
+    if name not in known:
+        raise ValueError(f"no curvature is called {name!r}: allowed are {', '.join(known)}")
     return Entry(name, "exact", known[name])

@@ -16,6 +16,7 @@ FOLDER = Path(__file__).parent / "tables"
 AS_PRINTED = "@printed"
 EXACT = "exact"
 SAMPLER = "sampler"
+CURVATURE = "curvature"
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}

@@ -5,6 +5,7 @@ quantity in the same way. The registry lists the quantities by name.
 """
 
 from quantities.problem import Problem as Problem
+from quantities.registry import curvatures as curvatures
 from quantities.registry import problem as problem
 from quantities.registry import problems as problems
 from quantities.registry import register as register

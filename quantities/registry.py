@@ -6,6 +6,7 @@ name of the entry point is that of the quantity. The package is imported when th
 
 from importlib.metadata import entry_points
 
+from quantities.curvature import CURVATURES
 from quantities.fuzz import PS, VELVET, G, Q, R
 from quantities.microfacet import (
     GGX_AVERAGE_ALBEDO,
@@ -31,6 +32,11 @@ def problems() -> dict[str, Problem]:
 def samplers() -> dict[str, Problem]:
     """Return the samplers and their densities by name. They are exported, but not fitted."""
     return dict(SAMPLERS)
+
+
+def curvatures() -> dict[str, Problem]:
+    """Return curvature from light and its packing by name. They are exported, but not fitted."""
+    return dict(CURVATURES)
 
 
 def problem(name: str) -> Problem:

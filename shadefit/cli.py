@@ -15,6 +15,7 @@ from shadefit.commands.bake import bake
 from shadefit.commands.certify import certify
 from shadefit.commands.compare import compare
 from shadefit.commands.cost import cost
+from shadefit.commands.curvature import curvature
 from shadefit.commands.evaluate import SETTINGS, evaluate
 from shadefit.commands.export import export
 from shadefit.commands.figures import figures
@@ -97,6 +98,12 @@ _add(
     ndf,
     "Examples: shadefit ndf ggx:0.1 -o ggx.json --to hlsl --code ggx.hlsl; "
     "shadefit ndf measured.csv --theta theta --value D --segments 24",
+)
+_add(
+    "curvature",
+    curvature,
+    "Examples: shadefit curvature head.obj --unit cm -o head.ply; "
+    "shadefit curvature hand.glb --unit m --widths none --json",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")
 _add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")

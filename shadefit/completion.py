@@ -9,7 +9,7 @@ from pathlib import Path
 
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
-# The quantities in the order of the registry, and the closed forms and samplers to export.
+# The quantities in the order of the registry, and the other code to export.
 QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX)
 EXACT = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 SAMPLERS = (
@@ -21,6 +21,12 @@ SAMPLERS = (
     "sampler/ggx-cap-pdf",
     "sampler/ggx-disk",
     "sampler/ggx-disk-pdf",
+)
+CURVATURES = (
+    "curvature/from-light",
+    "curvature/effective",
+    "curvature/pack",
+    "curvature/unpack",
 )
 
 
@@ -40,8 +46,8 @@ def complete_table(incomplete: str) -> list[str]:
 
 
 def complete_shader(incomplete: str) -> list[str]:
-    """Complete the name of a table, a closed form or a sampler: what can be exported as code."""
-    others = [name for name in (*EXACT, *SAMPLERS) if name.startswith(incomplete)]
+    """Complete the name of a table or of other code: what can be exported."""
+    others = [name for name in (*EXACT, *SAMPLERS, *CURVATURES) if name.startswith(incomplete)]
     return [*complete_table(incomplete), *others]
 
 

@@ -17,11 +17,11 @@ def require_tables(names: Sequence[str]) -> None:
     """
     if _is_extended():
         return
-    from coefficients.packaged import EXACT, SAMPLER, is_file, is_packaged, unknown
+    from coefficients.packaged import CURVATURE, EXACT, SAMPLER, is_file, is_packaged, unknown
 
     for name in names:
         listed = is_packaged(name) or is_file(name)
-        if not (listed or name.startswith((f"{EXACT}/", f"{SAMPLER}/"))):
+        if not (listed or name.startswith((f"{EXACT}/", f"{SAMPLER}/", f"{CURVATURE}/"))):
             raise unknown(name, QUANTITIES)
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import jax
 import jax.numpy as jnp
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from shadefit.curvature.blocks import over_rows
 from shadefit.curvature.meshes import Mesh, same_rows
@@ -58,7 +58,7 @@ def smoothed(mesh: Mesh, found: Curvature, widths: Sequence[float] = WIDTHS) -> 
 
 def _blurred(mesh: Mesh, found: Curvature, width: float) -> np.ndarray:
     samples = _samples(mesh, found, width * CELL)
-    tree = cKDTree(samples.places)
+    tree = KDTree(samples.places)
     result = np.empty_like(found.tensors)
     for start in range(0, len(result), _VERTICES_AT_ONCE):
         rows = slice(start, min(start + _VERTICES_AT_ONCE, len(result)))
@@ -93,8 +93,9 @@ def _samples(mesh: Mesh, found: Curvature, cell: float) -> _Samples:
     kept &= used
     places, normals, areas = mesh.vertices[kept], mesh.normals[kept], found.areas[kept]
     if not len(places):
-        return _Samples(np.zeros((1, 3)), found.frames[:1], mesh.normals[:1], found.tensors[:1],
-                        np.zeros(1))
+        return _Samples(
+            np.zeros((1, 3)), found.frames[:1], mesh.normals[:1], found.tensors[:1], np.zeros(1)
+        )
     keys = np.column_stack([np.floor(places / cell), normals >= 0])
     cells = same_rows(keys.astype(float))
     count = cells.max() + 1

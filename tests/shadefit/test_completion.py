@@ -7,7 +7,7 @@ import pytest
 
 from coefficients.catalogue import AS_PRINTED, names, resolve
 from programs import LANGUAGES
-from quantities import problems, samplers
+from quantities import curvatures, problems, samplers
 from shadefit import completion
 from shadefit.commands.selection import ALL, selection
 
@@ -17,13 +17,14 @@ def test_the_names_that_are_repeated_are_the_real_ones():
     exact = [f"exact/{p.name}" for p in problems().values() if p.exact_code is not None]
     assert list(completion.EXACT) == exact
     assert list(completion.SAMPLERS) == [f"sampler/{name}" for name in samplers()]
+    assert list(completion.CURVATURES) == [f"curvature/{name}" for name in curvatures()]
 
 
 def test_all_that_there_is_is_completed():
     assert completion.complete_quantity("") == [*problems(), ALL]
     tables = [name for name in names() if not name.endswith(AS_PRINTED)]
     assert sorted(completion.complete_table("")) == sorted(tables)
-    others = [*completion.EXACT, *completion.SAMPLERS]
+    others = [*completion.EXACT, *completion.SAMPLERS, *completion.CURVATURES]
     assert completion.complete_shader("") == [*completion.complete_table(""), *others]
     assert completion.complete_language("") == list(LANGUAGES)
 
