@@ -19,6 +19,7 @@ NAVIGATION = {
     "Mathematics": (
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
         *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
+        "docs/curvature",
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }

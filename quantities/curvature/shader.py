@@ -78,7 +78,7 @@ def _unpack(*given):
     return tuple(unpacked(codes, clamped(given[4], 1 / 64, LARGEST)))
 
 
-_RANGE = Parameter("range", (1 / 64, LARGEST), "1/mm")
+_RANGE = Parameter("largest", (1 / 64, LARGEST), "1/mm")
 _PACK = function(
     "PackCurvature",
     (*_ENTRIES, _RANGE),
