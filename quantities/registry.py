@@ -6,6 +6,7 @@ name of the entry point is that of the quantity. The package is imported when th
 
 from importlib.metadata import entry_points
 
+from quantities.curvature import CURVATURES
 from quantities.detail import OPERATORS
 from quantities.fuzz import PS, VELVET, G, Q, R
 from quantities.maps import DECODERS, SGGX_FILTER, SGGX_FILTER_AXES
@@ -28,8 +29,13 @@ _PROBLEMS: dict[str, Problem] = {
     each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS, *SKIN_QUANTITIES)
 }
 # What is exported, but not fitted, by the first part of its name: samplers and their densities,
-# decoders of textures, and operators of detail maps.
-_FUNCTIONS = {"sampler": SAMPLERS, "decode": DECODERS, "detail": OPERATORS}
+# decoders of textures, operators of detail maps, and curvature from light.
+_FUNCTIONS = {
+    "sampler": SAMPLERS,
+    "decode": DECODERS,
+    "detail": OPERATORS,
+    "curvature": CURVATURES,
+}
 
 
 def problems() -> dict[str, Problem]:

@@ -15,6 +15,7 @@ from shadefit.commands.bake import bake
 from shadefit.commands.certify import certify
 from shadefit.commands.compare import compare
 from shadefit.commands.cost import cost
+from shadefit.commands.curvature import curvature
 from shadefit.commands.detail import detail
 from shadefit.commands.evaluate import SETTINGS, evaluate
 from shadefit.commands.export import export
@@ -101,6 +102,12 @@ _add(
     "Examples: shadefit ndf ggx:0.1 -o ggx.json --to hlsl --code ggx.hlsl; "
     "shadefit ndf ggx:0.2,0.3 --to glsl --verify; "
     "shadefit ndf measured.csv --theta theta --value D --segments 24",
+)
+_add(
+    "curvature",
+    curvature,
+    "Examples: shadefit curvature head.obj --unit cm -o head.ply; "
+    "shadefit curvature hand.glb --unit m --widths none --json",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")
 _add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")

@@ -322,6 +322,33 @@ class DetailOutput(_Output):
     files: list[str]
 
 
+class CurvatureOutput(_Output):
+    """`shadefit curvature`: lengths in mm, `area` in mm², curvature in 1/mm.
+
+    `mean_curvature` has the least, the 5 %, 50 % and 95 % quantiles, and the largest of vertices.
+    `widths` are those of the smoothing. `concave` is whether concave curvature was kept. `clamped`,
+    `made_normals` and `isolated` count vertices, `degenerate` triangles, `non_manifold` edges.
+    """
+
+    command: Literal["curvature"] = "curvature"
+    mesh: str
+    unit: str
+    vertices: Count
+    triangles: Count
+    area: Size
+    mean_curvature: list[Number]
+    widths: list[Size]
+    concave: bool
+    range: Size
+    packing_error: Size
+    clamped: Count
+    made_normals: Count
+    degenerate: Count
+    isolated: Count
+    non_manifold: Count
+    files: list[str]
+
+
 class RenderOutput(_Output):
     """`shadefit render`; with --sweep there are no `images`."""
 
@@ -348,6 +375,7 @@ Output = Annotated[
     | MapsFilterOutput
     | MapsErrorsOutput
     | DetailOutput
+    | CurvatureOutput
     | RenderOutput,
     Field(discriminator="command"),
 ]

@@ -19,7 +19,13 @@ NAVIGATION = {
     "Mathematics": (
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
         *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
-        *("docs/sggx-maps", "docs/sggx-encodings", "docs/detail-maps", "docs/skin"),
+        *(
+            "docs/sggx-maps",
+            "docs/sggx-encodings",
+            "docs/detail-maps",
+            "docs/skin",
+            "docs/curvature",
+        ),
     ),
     "Project": ("CONTRIBUTING", "CHANGELOG"),
 }

@@ -1,0 +1,106 @@
+"""`shadefit curvature`, mesh files and smoothing: what is written, and bad input in one line."""
+
+import json
+
+import numpy as np
+import pytest
+
+from shadefit.cli import main
+from shadefit.curvature import curvature
+from shadefit.curvature.files import ply_bytes, read_mesh
+from shadefit.curvature.generators import icosphere, torus
+from shadefit.curvature.smoothing import convex, smoothed
+from shadefit.curvature.vertex_bytes import from_bytes, to_bytes
+from tests.shadefit.test_records import CHECKED
+
+pytest.importorskip("trimesh")
+
+
+def run(*arguments) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(["curvature", *map(str, arguments)])
+    return ended.value.code
+
+
+@pytest.fixture
+def sphere(tmp_path):
+    made = icosphere(10.0, 2)
+    path = tmp_path / "sphere.ply"
+    path.write_bytes(ply_bytes(made, curvature(made)))
+    return path
+
+
+def test_a_sphere_is_read_with_its_normals_and_written(sphere, tmp_path, capsys):
+    out = tmp_path / "out.ply"
+    assert run(sphere, "--unit", "cm", "-o", out, "--json") == 0
+    said = CHECKED.validate_json(capsys.readouterr().out)
+    assert (said.vertices, said.triangles, said.made_normals) == (162, 320, 0)
+    np.testing.assert_allclose(said.mean_curvature, 0.01, rtol=1e-6)
+    again = read_mesh(out, "mm")
+    np.testing.assert_allclose(np.linalg.norm(again.vertices, axis=1), 100.0, rtol=1e-6)
+    assert run(sphere, "--unit", "mm") == 0
+    assert "0.1000" in capsys.readouterr().out
+
+
+def test_smoothing_keeps_a_sphere_and_clamping_removes_concavity():
+    made = icosphere(20.0, 3)
+    found = curvature(made)
+    assert np.abs(smoothed(made, found).tensors - found.tensors).max() < 1e-14
+    ring = torus(15.0, 6.0, 24, 12)
+    raw = curvature(ring)
+    least = np.linalg.eigvalsh(convex(raw).tensors[:, [[0, 1], [1, 2]]]).min()
+    assert least > -1e-15 > np.linalg.eigvalsh(raw.tensors[:, [[0, 1], [1, 2]]]).min()
+    with pytest.raises(ValueError, match="widths = "):
+        smoothed(made, found, [0.0])
+
+
+def test_bytes_keep_half_a_step():
+    tensors = np.random.default_rng(1).uniform(-0.5, 0.5, (100, 3))
+    back = from_bytes(to_bytes(tensors))
+    assert np.abs(back[:, :3] - tensors).max() <= 0.5 / 127 / 2 * (1 + 1e-12)
+    with pytest.raises(ValueError, match="range = 0: allowed"):
+        to_bytes(tensors, 0.0)
+
+
+def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
+    (tmp_path / "secret.bin").write_bytes(bytes(36))
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    document = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"uri": "../secret.bin", "byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}],
+        "scenes": [{"nodes": [0]}],
+    }
+    path = inner / "mesh.gltf"
+    path.write_text(json.dumps(document))
+    assert run(path, "--unit", "mm") == 2
+    assert "allowed are files beside it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "options", "message"),
+    [
+        ("a.ply", None, [], "the unit of the mesh is not known"),
+        ("a.ply", None, ["--unit", "mile"], "unit 'mile' is not known"),
+        ("a.ply", None, ["--unit", "mm"], "is no file"),
+        ("a.stl", "x", ["--unit", "mm"], "allowed are files that end with"),
+        ("a.ply", "garbage", ["--unit", "mm"], "cannot be read as a mesh"),
+        ("a.glb", "garbage", ["--unit", "mm"], "cannot be read as a mesh"),
+        ("a.obj", "v 0 0 0\n", ["--unit", "mm"], "a.obj"),
+        ("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ["--unit", "mm"], "vertex 0 is"),
+        ("a.ply", None, ["--unit", "mm", "--widths", "-1"], "--widths -1: allowed"),
+        ("a.ply", None, ["--unit", "mm", "--range", "0"], "range = 0: allowed"),
+        ("a.ply", None, ["--unit", "mm", "-o", "b.obj"], "allowed is a file that ends with .ply"),
+    ],
+)
+def test_bad_input_is_one_line(tmp_path, capsys, name, content, options, message):
+    path = tmp_path / name
+    if content is not None:
+        path.write_text(content)
+    assert run(path, *options) == 2
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == 1
