@@ -119,10 +119,10 @@ def resolve(name: str) -> Entry:
     """Return what a name stands for.
 
     It is a table's name, such as 'ps' (refitted), 'published/ps', 'published/ps@printed' or
-    'best/q-9'; the name of a closed form, such as 'exact/ps', or of another function that is exported but not fitted, such as
-    'detail/overlay'; or the path of a table's file. The errata of a published table are applied
-    unless '@printed' follows its name. Raises ValueError for any other name, and for a file that is
-    not a valid table.
+    'best/q-9'; the name of a closed form, such as 'exact/ps', or of another function that is
+    exported but not fitted, such as 'detail/overlay'; or the path of a table's file. The errata of
+    a published table are applied unless '@printed' follows its name. Raises ValueError for any
+    other name, and for a file that is not a valid table.
     """
     declared = _declared()
     if name in declared:
