@@ -1,5 +1,6 @@
 """`shadefit report`: write one HTML file with tables of errors, all figures, and an explorer."""
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -25,15 +26,16 @@ def report(
     """Write one HTML file: errors and costs of all tables, figures, errata, and an explorer."""
     require_tables(tables or [])
     from coefficients.files import require_writable_file, write_whole
-    from shadefit.figures import pictures, render
+    from shadefit.figures import drawable, pictures, render
     from shadefit.progress import stages
     from shadefit.report.page import page
 
     require_writable_file(out)
     more = _more(tables or [])
     drawn = {}
+    known, absent = drawable(pictures())
+    print(*absent, sep="\n", end="\n" if absent else "", file=sys.stderr)
     with stages() as progress:
-        known = pictures()
         stage = progress.begin("", total=len(known) + 1)
         for name, picture in known.items():
             stage.show(name)

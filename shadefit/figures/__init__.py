@@ -6,4 +6,6 @@ drawn from its plot hints: by `curves` if it has one axis, by `maps` if it has t
 
 from shadefit.figures.gallery import pictures as pictures
 from shadefit.figures.picture import Picture as Picture
+from shadefit.figures.picture import drawable as drawable
+from shadefit.figures.picture import require_libraries as require_libraries
 from shadefit.figures.style import render as render

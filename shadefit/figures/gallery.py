@@ -4,6 +4,7 @@ from functools import partial
 
 from quantities import Problem, problems
 from shadefit.figures.curves import draw_curves
+from shadefit.figures.detail_maps import detail_pictures
 from shadefit.figures.encodings import encoding_pictures
 from shadefit.figures.frontier import draw_frontier
 from shadefit.figures.fuzz_pictures import DRAWN, fuzz_pictures
@@ -50,6 +51,7 @@ def pictures() -> dict[str, Picture]:
         **sampling_pictures(),
         **ndf_pictures(),
         **encoding_pictures(),
+        **detail_pictures(),
     }
     return {**topics, **others, "frontier": _FRONTIER, "ggx-frontier": _GGX_FRONTIER}
 

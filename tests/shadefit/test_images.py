@@ -223,3 +223,10 @@ def test_an_absent_library_says_what_to_install(monkeypatch):
     monkeypatch.setattr(libraries.importlib, "import_module", absent)
     with pytest.raises(ValueError, match=r"quicktex: install it by pip install 'shadefit\[maps\]'"):
         optional_library("quicktex.s3tc.bc1")
+    with pytest.raises(ValueError, match=r"skimage: install it by pip install scikit-image$"):
+        optional_library("skimage.data")
+
+
+def test_each_optional_module_has_a_line_on_how_to_install_it():
+    tops = {module.partition(".")[0] for module in libraries._LIBRARIES}
+    assert tops == set(libraries._INSTALLED_BY)
