@@ -54,8 +54,9 @@ def channel_reference(surface: str, name: str, profile: GaussianProfile) -> Refe
         found = [by_sampling(theta, s * curvature, **options) for s in deviations]
         return Estimate(
             w @ jnp.stack([each.value for each in found]),
-            # The same random numbers serve all Gaussians, so that their errors may add up.
-            w @ jnp.stack([each.error for each in found]),
+            # The same random numbers serve all Gaussians, so that their errors may add up. On a
+            # plane only rounding is left.
+            w @ jnp.stack([each.error for each in found]) + _ERROR,
         )
 
     return Reference(
@@ -64,7 +65,7 @@ def channel_reference(surface: str, name: str, profile: GaussianProfile) -> Refe
         meaning=f"{name} light that skin scatters on a {surface}",
         definition="∫ R(|x − y|) max(0, n(y)·l) dy / ∫ R(|x − y|) dy",
         axes=AXES,
-        sampling=Sampling(fitted=11, checked=13, judged=14, climbs=False, verified=1 << 12),
+        sampling=Sampling(fitted=11, checked=13, judged=14, verified=1 << 12),
         quadrature=quadrature,
         monte_carlo=monte_carlo,
         batch=1024,

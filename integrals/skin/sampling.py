@@ -22,7 +22,8 @@ def ring_by_sampling(
 ) -> Estimate:
     """Estimate the light at the angle θ of a ring, by even points near θ; see `ring_lobe`."""
     (u,) = jnp.moveaxis(jnp.asarray(unit_points(samples, 1, sequence, seed)), -1, 0)
-    s = jnp.asarray(width, float)
+    # Below this width the surface is a plane to the last digit, but 0 would divide 0.
+    s = jnp.maximum(jnp.asarray(width, float), 1e-17)
     reach = jnp.minimum(jnp.pi, _REACH * s)
     x = reach * (2 * u - 1)
     density = jnp.exp(-2 * (jnp.sin(x / 2) / s) ** 2) / (jnp.sqrt(2 * jnp.pi) * s * ring_mass(s))

@@ -174,9 +174,20 @@ def test_coefficients_of_the_best_tables_are_float32(name):
 
 
 # The forms that are quotients of linear functions, so that the least error is bounded from below.
-QUOTIENTS = ("best/q-", "best/r-", "best/ggx-directional-albedo-", "best/ggx-average-albedo-")
+QUOTIENTS = (
+    *("best/q-", "best/r-", "best/ggx-directional-albedo-", "best/ggx-average-albedo-"),
+    *("best/sggx-filter-", "best/skin-"),
+)
 # A proven lower bound is at most so far below the largest error, as README says.
 GAP = 0.005
+# Fits of forms with a proven lower bound that are further above it.
+NOT_LEAST = {
+    "best/skin-cylinder-green-63": 0.08,
+    "best/skin-cylinder-blue-63": 0.012,
+    "best/skin-sphere-red-63": 0.022,
+    "best/skin-sphere-green-63": 0.008,
+    "best/skin-sphere-blue-63": 0.01,
+}
 # Fits whose largest error elsewhere is further above that at their own points.
 NOT_SETTLED = {"best/ps-11": 0.006, "best/ggx-scale-83": 0.006, "best/ggx-bias-93": 0.012}
 # A change of one coefficient by one per cent can be undone, to first order.
@@ -194,7 +205,7 @@ def test_a_best_table_says_how_near_it_is_to_the_best_coefficients(name):
     if least is not None:
         largest = table.errors.off_grid.max
         assert least <= table.errors.on_grid.max * (1 + 1e-9)
-        assert (1 - GAP) * largest < least <= largest * (1 + 1e-9)
+        assert (1 - NOT_LEAST.get(name, GAP)) * largest < least <= largest * (1 + 1e-9)
     if local is not None:
         # At the points of the fit, where the largest error may be less than elsewhere.
         errors = table.errors
@@ -247,13 +258,17 @@ def test_only_the_coefficients_of_a_table_are_a_local_optimum(name):
     assert decrease(fitted.form.fitted(changed), entry) > UNDONE
 
 
-def test_which_tables_are_not_proven_to_be_between_zero_and_one():
+def test_which_tables_are_not_proven_to_be_within_the_codomain():
     """README states this too."""
     without = [name for name in TABLES if not resolve(name).require_table().certificates.range]
-    assert without == ["ggx-bias", "ggx-directional-albedo", "ggx-scale", "ps"]
+    skin = [name for name in TABLES if "skin-" in name]
+    assert sorted(without) == sorted(
+        ["ggx-bias", "ggx-directional-albedo", "ggx-scale", "ps", *skin]
+    )
     for name in TABLES:
-        bounds = resolve(name).require_table().certificates.range or [0.0, 1.0]
-        assert -ROUNDING_OF_PROOF <= bounds[0] <= bounds[1] <= 1 + ROUNDING_OF_PROOF
+        low, high = resolve(name).problem.reference.codomain
+        bounds = resolve(name).require_table().certificates.range or [low, high]
+        assert low - ROUNDING_OF_PROOF <= bounds[0] <= bounds[1] <= high + ROUNDING_OF_PROOF
 
 
 # The checks above can fail.
@@ -416,13 +431,14 @@ def test_the_range_of_a_table_is_proven_anew(name):
     fitted, stated = entry.require_fitted(), entry.require_table().certificates.range
     points = scattered_points(fitted.reference, fitted.axes, 13, 5)
     found, values = certify_range(fitted), form_values(fitted, points)
+    low, high = entry.problem.reference.codomain
     if found is None:
         assert stated is None
-        assert values.min() < 0 or values.max() > 1
+        assert values.min() < low or values.max() > high
         return
     assert stated == pytest.approx([found.lower, found.upper], abs=TIGHTNESS)
     assert found.lower <= values.min() <= values.max() <= found.upper
-    assert -ROUNDING_OF_PROOF <= found.lower <= found.upper <= 1 + ROUNDING_OF_PROOF
+    assert low - ROUNDING_OF_PROOF <= found.lower <= found.upper <= high + ROUNDING_OF_PROOF
     if fitted.form.proofs.margins is None:
         assert values.min() - found.lower < 3 * TIGHTNESS
         assert found.upper - values.max() < 3 * TIGHTNESS

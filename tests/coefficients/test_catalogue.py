@@ -22,7 +22,8 @@ from quantities import problem, problems
 
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias")
-PUBLISHED = ("ps", "g", "q", "r", *_GGX, "sggx-filter", "sggx-filter-axes")
+_SKIN = tuple(f"skin-cylinder-{channel}" for channel in ("blue", "green", "red"))
+PUBLISHED = ("ps", "g", "q", "r", *_GGX, "sggx-filter", "sggx-filter-axes", *_SKIN)
 # Constants of two sources are in print for these.
 SECOND = ("sggx-filter-lean", "sggx-filter-axes-lean")
 CLOSED_FORMS = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
@@ -40,7 +41,9 @@ def test_every_listed_name_resolves():
     assert list(listed) == [
         "g",
         *("ggx-average-albedo", "ggx-bias", "ggx-directional-albedo", "ggx-scale"),
-        *("ps", "q", "r", "sggx-filter-axes", "sggx-filter", "velvet"),
+        *("ps", "q", "r", "sggx-filter-axes", "sggx-filter"),
+        *(f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("blue", "green", "red")),
+        "velvet",
         *names_of_best(),
         *(f"published/{each}" for each in sorted((*PUBLISHED, *SECOND), key=lambda x: f"{x}.json")),
         "published/ps@printed",

@@ -63,7 +63,13 @@ def test_published_refitted_and_best_tables_are_shipped():
         for q in ("bias", "directional-albedo", "scale")
     ]
     more = ["refit/velvet", "refit/ggx-average-albedo"]
-    assert sorted(names) == sorted([*names_of_best(), *others, *ggx, *more])
+    ends = ("published", "refit")
+    maps = [f"{folder}/sggx-filter{axes}" for folder in ends for axes in ("", "-axes")]
+    maps += [f"published/sggx-filter{axes}-lean" for axes in ("", "-axes")]
+    channels = ("red", "green", "blue")
+    skin = [f"{folder}/skin-cylinder-{channel}" for folder in ends for channel in channels]
+    skin += [f"refit/skin-sphere-{channel}" for channel in channels]
+    assert sorted(names) == sorted([*names_of_best(), *others, *ggx, *more, *maps, *skin])
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}-{path.stem}")

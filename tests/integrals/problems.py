@@ -97,6 +97,17 @@ def _table() -> list[KnownValue]:
         KnownValue("ggx-scale", (0.0, 1.0), 20 / 21, "α = 1, μ = 0"),
         KnownValue("ggx-average-albedo", (1.0,), 4 / 3 * (1 - np.log(2)), "average of α = 1"),
     ]
+    # Without a spread, the lobe is that of the texels. Skin without curvature is a plane.
+    values += [
+        KnownValue("sggx-filter", (0.0,), 1.0, "no spread"),
+        KnownValue("sggx-filter-axes", (0.0, 0.0), 1.0, "no spread"),
+    ]
+    values += [
+        KnownValue(f"skin-{surface}-{channel}", (cosine, 0.0), max(cosine, 0.0), "a plane")
+        for surface in ("cylinder", "sphere")
+        for channel in ("red", "green", "blue")
+        for cosine in (-0.5, 0.25, 1.0)
+    ]
     return values
 
 
