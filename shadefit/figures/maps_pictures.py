@@ -23,12 +23,13 @@ def maps_pictures() -> dict[str, Picture]:
     return {
         "maps-highlight": Picture(
             "A highlight on filtered scratches",
-            "The highlight of a small lamp on a plane whose every point has one texel of a level of "
-            "the mip chain of the synthetic map of scratches: on the right the mean over the 16, "
-            "256 or 4096 lobes of its footprint, before it the one lobe that each filter leaves "
-            "of them. Numbers are rms errors of radiance, divided by its mean. The naive mean forgets "
-            "the slopes, and is too bright in levels 2 and 4. LEAN adds twice their covariance, "
-            "which is too wide in levels 4 and 6. No single lobe has both the core and the halo.",
+            "The highlight of a small lamp on a plane whose every point has one texel of a "
+            "level of the mip chain of the synthetic map of scratches: on the right the mean "
+            "over the 16, 256 or 4096 lobes of its footprint, before it the one lobe that each "
+            "filter leaves of them. Numbers are rms errors of radiance, divided by its mean. "
+            "The naive mean forgets the slopes, and is too bright in levels 2 and 4. LEAN adds "
+            "twice their covariance, which is too wide in levels 4 and 6. No single lobe has "
+            "both the core and the halo.",
             draw_highlight,
         )
     }
