@@ -58,10 +58,15 @@ def filter_form(*, above: int, below: int) -> Form:
 
 @functools.cache
 def axes_form(*, numerator: Sequence, denominator: Sequence) -> Form:
-    """Return w₁ = 1 + N/D; N has the given monomials of u₁ and u₂, D the constant 1 and others."""
+    """Return w₁ = 1 + N/D; N has the given monomials of u₁ and u₂, D the constant 1 and others.
+
+    Raises ValueError for a constant in N, because w₁ = 1 without a spread.
+    """
+    if (0, 0) in numerator:
+        raise ValueError("numerator = … (0, 0) …: allowed are other monomials, as w₁ = 1 at u = 0")
     form = rational(
         SGGX_FILTER_AXES,
-        [pair for pair in numerator if pair != (0, 0)],
+        numerator,
         [(0, 0), *denominator],
         name="quotient-sggx-filter-axes",
         plus=lambda: 1.0,

@@ -7,9 +7,7 @@ import typer
 
 from shadefit.commands.options import Json
 
-maps = typer.Typer(
-    help="Filter and encode maps of normals and anisotropic GGX roughness.", no_args_is_help=True
-)
+maps = typer.Typer(help="Filter and encode maps of normals and anisotropic GGX roughness.")
 _Method = Literal["naive", "clean", "lean", "sggx", "estimated", "fitted", "kl"]
 
 

@@ -9,6 +9,7 @@ from shadefit.figures.encodings import encoding_pictures
 from shadefit.figures.frontier import draw_frontier
 from shadefit.figures.fuzz_pictures import DRAWN, fuzz_pictures
 from shadefit.figures.maps import draw_errors
+from shadefit.figures.maps_pictures import maps_pictures
 from shadefit.figures.microfacet_pictures import microfacet_pictures
 from shadefit.figures.microfacet_sampling import sampling_pictures
 from shadefit.figures.ndf import ndf_pictures
@@ -52,6 +53,7 @@ def pictures() -> dict[str, Picture]:
         **ndf_pictures(),
         **encoding_pictures(),
         **detail_pictures(),
+        **maps_pictures(),
     }
     return {**topics, **others, "frontier": _FRONTIER, "ggx-frontier": _GGX_FRONTIER}
 

@@ -15,6 +15,7 @@ R_SHAPE = {
     "least_alpha": 0.15,
 }
 MASKED = {"numerator": [[0, 1], [1, 0]], "denominator": [[0, 3], [3, 0]]}
+SKIN = {"narrow": 0.1, "wide": 0.5, "numerator": [[5, 0]], "below": 0}
 SHAPES = {
     "pole-q": {"structure": "free", "terms": 1, "poles": 1},
     "decay-g": {"decay": "power", "rate": "constant", "factor": "linear"},
@@ -27,6 +28,14 @@ SHAPES = {
     "masked-ggx-scale": MASKED,
     "masked-ggx-bias": MASKED,
     "quotient-ggx-average-albedo": {"structure": "log", "above": 1, "below": 0},
+    "quotient-sggx-filter": {"above": 1, "below": 1},
+    "quotient-sggx-filter-axes": {"numerator": [[1, 0]], "denominator": [[0, 1]]},
+    "hyperbola-skin": SKIN,
+}
+# Arguments that the function of a family limits more than their kind does.
+LIMITED = {
+    "quotient-sggx-filter-axes": {"numerator": [[[1, 0]], [[7, 7]]]},
+    "hyperbola-skin": {"narrow": [0.05], "wide": [0.5], "numerator": [[[5, 0]], [[5, 7]]]},
 }
 FAMILIES = {name: owner for owner in problems().values() for name in owner.families}
 
@@ -68,6 +77,10 @@ def test_candidates_begin_at_the_lower_ends_that_are_asked_for():
         ("monomial-r", {**R_SHAPE, "numerator": [[0, 99]]}, "numerator"),
         ("monomial-r", {**R_SHAPE, "denominator": [[0, 0]]}, "denominator"),
         ("cubic-ps", {"steps": 9, "degree": 0, "least_alpha": 0.1}, "steps ="),
+        ("quotient-sggx-filter-axes", {"numerator": [[0, 0]], "denominator": []}, "numerator ="),
+        ("hyperbola-skin", {**SKIN, "numerator": [[6, 1]]}, "term"),
+        ("hyperbola-skin", {**SKIN, "numerator": [[0, 0]]}, "term"),
+        ("hyperbola-skin", {**SKIN, "narrow": 0.6}, "narrow ="),
     ],
 )
 def test_a_shape_that_is_not_allowed_is_refused_in_one_line(family, shape, message):
@@ -107,7 +120,8 @@ def extremes(allowed) -> list:
 def test_every_allowed_shape_gives_a_form(family):
     arguments = FAMILIES[family].families[family].arguments
     assert set(arguments) == set(SHAPES[family])
-    for values in itertools.product(*map(extremes, arguments.values())):
+    ends = {name: extremes(allowed) for name, allowed in arguments.items()}
+    for values in itertools.product(*(ends | LIMITED.get(family, {})).values()):
         shape = dict(zip(arguments, values, strict=True))
         if shape.get("terms") == shape.get("poles") == 0:
             continue
@@ -119,4 +133,5 @@ def test_every_allowed_shape_gives_a_form(family):
 def test_families_are_named_after_their_quantity():
     assert set(FAMILIES) == set(SHAPES)
     for name, owner in FAMILIES.items():
-        assert name.endswith(f"-{owner.name}")
+        # The quantities of skin share one family, which has the name of their topic.
+        assert name.endswith((f"-{owner.name}", f"-{owner.topic}"))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from coefficients.catalogue import resolve
+from shadefit.cli import main
 from shadefit.maps.best_lobe import best_lobe, slopes_of_lobes, unit_slopes
 from shadefit.maps.errors import filter_errors
 from shadefit.maps.filters import FILTERS, LobeMap, filter_chain, lobe_map
@@ -172,6 +173,25 @@ def test_other_arguments_are_refused():
         filter_errors(["spun"], footprints=99)
     with pytest.raises(ValueError, match="map 'wool' is not known"):
         synthetic_map("wool", 32, 1)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ([], "--convention"),
+        (["--convention", "opengl", "--method", "mean"], "'mean' is not one of"),
+        (["--convention", "opengl", "--colour-space", "srgb"], "are linear, not srgb"),
+        (["--convention", "opengl", "--colour-space", "linear"], "No such file"),
+    ],
+)
+def test_the_command_refuses_bad_input_in_one_line(tmp_path, monkeypatch, capsys, change, message):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as status:
+        main(["maps", "filter", "n.png", "r.png", *change])
+    assert status.value.code == 2
+    error = capsys.readouterr().err
+    assert message in error and error.count("\n") == 1
+    assert not list(tmp_path.rglob("*.png"))
 
 
 @pytest.fixture(scope="module")
