@@ -148,6 +148,7 @@ def test_both_hemispheres_make_the_whole_sphere():
     np.testing.assert_allclose(2 * value, [1.052, 0.978, 0.512], rtol=0, atol=5.1e-4)
 
 
+@pytest.mark.slow
 def test_derivatives():
     points = awkward_points(9, 24, 0.3)
     points[1:] = np.clip(points[1:], 0.05, 1.5)
