@@ -12,7 +12,9 @@ from shading.directions import fiber_direction as fiber_direction
 from shading.directions import sin2_between as sin2_between
 from shading.fuzz.ambient import ambient_attenuation as ambient_attenuation
 from shading.fuzz.ambient import ambient_layer as ambient_layer
+from shading.fuzz.ambient import ambient_layer_lit as ambient_layer_lit
 from shading.fuzz.ambient import ambient_radiance as ambient_radiance
+from shading.fuzz.ambient import lit_fraction as lit_fraction
 from shading.fuzz.brdf import asymmetry_from_spread as asymmetry_from_spread
 from shading.fuzz.brdf import base_attenuation as base_attenuation
 from shading.fuzz.brdf import escape as escape

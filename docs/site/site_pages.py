@@ -18,6 +18,7 @@ NAVIGATION = {
     "Reference": ("docs/site/commands", "docs/json", "docs/table-format", "docs/site/api"),
     "Mathematics": (
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
+        "docs/ambient-light",
         *("docs/microfacet", "docs/microfacet-sampling", "docs/piecewise-ndf"),
         *(
             "docs/sggx-maps",

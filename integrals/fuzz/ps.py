@@ -5,6 +5,8 @@ function of a fibre. The supplement (Eq. 1 and 2) fits P_s, because its authors 
 docs/closed-form.md derives the closed form used here.
 """
 
+from typing import NamedTuple
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -52,6 +54,23 @@ WIDTH = 0.42
 LEAST_ALPHA = 1e-50
 
 
+class LitCone(NamedTuple):
+    """The cone of normals that reflect u upwards: λ and the terms of its equation, scalars.
+
+    The names are those of `scattered_fraction`: `cosine` is c, `alpha2` is α², `kappa` is κ,
+    `sigma2` is σ_u², `product` is T, `lift` is m, and `coefficient` is A.
+    """
+
+    root: Array
+    cosine: Array
+    alpha2: Array
+    kappa: Array
+    sigma2: Array
+    product: Array
+    lift: Array
+    coefficient: Array
+
+
 def scattered_fraction(
     cos_un: Scalar,
     cos_ut: Scalar,
@@ -85,6 +104,39 @@ def scattered_fraction(
     ratio to α². An α below `least_alpha` is raised to it. The default keeps α⁴ in the range of
     float32.
     """
+    cone = lit_cone(
+        cos_un,
+        cos_ut,
+        cos_nt,
+        alpha,
+        steps,
+        sin2_ut=sin2_ut,
+        sin2_nt=sin2_nt,
+        least_alpha=least_alpha,
+    )
+    return 1 - reflected_up(cone)
+
+
+def reflected_up(cone: LitCone) -> Array:
+    """Return 1 − P_s, the part of the visible normals that lies in the `cone`."""
+    root, coeff_a, m = cone.root, cone.coefficient, cone.lift
+    root2 = root * root
+    ellipse = root2 * jnp.sqrt((root + cone.cosine) * (root + m / cone.sigma2))
+    return ellipse / ((root + coeff_a + root) * root2 + m)
+
+
+def lit_cone(
+    cos_un: Scalar,
+    cos_ut: Scalar,
+    cos_nt: Scalar,
+    alpha: Scalar,
+    steps: int = FLOAT64_STEPS,
+    *,
+    sin2_ut: Scalar | None = None,
+    sin2_nt: Scalar | None = None,
+    least_alpha: float = 1e-6,
+) -> LitCone:
+    """Return λ and the terms of its equation. The arguments are those of `scattered_fraction`."""
     # notation: c, a, b, α, κ, T, S, m as above, p = S − T, r = S + T, coeff_a = A, coeff_e = E.
     c, a, b, alpha = map(jnp.asarray, (cos_un, cos_ut, cos_nt, alpha))
     c, alpha = magnitude(c), at_least(alpha, least_alpha)
@@ -111,9 +163,7 @@ def scattered_fraction(
     divisor = frozen + m
     start = at_least((h + jnp.sqrt(h * h + m * divisor)) / divisor, alpha2)
     root = at_least(positive_root(coeff_a, coeff_e, m, start, newton_step, steps), alpha2)
-    root2 = root * root
-    ellipse = root2 * jnp.sqrt((root + c) * (root + m / sigma2))
-    return 1 - ellipse / ((root + coeff_a + root) * root2 + m)
+    return LitCone(root, c, alpha2, kappa, sigma2, t, m, coeff_a)
 
 
 @leg(*AXES)

@@ -7,6 +7,8 @@ Where light has nine coefficients of spherical harmonics, a result (9,) has one 
 harmonic. Its dot product with the coefficients is the result for that light.
 """
 
+from typing import NamedTuple
+
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -21,6 +23,7 @@ from shading import (
     harmonics,
     layer_brdf,
     penetration,
+    scattering_kernel,
 )
 from shading.types import Scalar
 
@@ -49,6 +52,46 @@ def layer_response(
     return weights @ jax.vmap(scattered)(lights)
 
 
+class LayerMoments(NamedTuple):
+    """Moments of the lights that the layer sends to a view, of p(u, v) g(u, v) over the upper u.
+
+    Attributes:
+        total: M0 = ∫_Ω p g dω_u, the radiance of the layer in light of radiance one, over c_f.
+        first: M1 = ∫_Ω p g u dω_u (3,). M1/M0 is the mean direction of the light.
+        second: M2 = ∫_Ω p g u uᵀ dω_u (3, 3). Its trace is M0.
+    """
+
+    total: Array
+    first: Array
+    second: Array
+
+
+def layer_moments(
+    alpha: Scalar,
+    theta_f: Scalar,
+    density: Scalar,
+    theta_v: Scalar,
+    phi_v: Scalar,
+    step: float = STEP,
+    azimuths: int = AZIMUTHS,
+) -> LayerMoments:
+    """Return the moments of the lights that the layer sends towards v, over c_f.
+
+    The phase function is that of fibres, and g is `scattering_kernel`. They describe the layer in
+    light of at most the second degree in u, so nine harmonics have no more to tell.
+    """
+    require_float64()
+    lights, weights = hemisphere_rule(step, azimuths)
+    fiber, view = fiber_direction(theta_f), direction(theta_v, phi_v)
+
+    def scattered(light):
+        phase = fiber_phase_function(light, view, fiber, alpha)
+        return phase * scattering_kernel(light[2], view[2], density)
+
+    mass = weights * jax.vmap(scattered)(lights)
+    return LayerMoments(jnp.sum(mass), mass @ lights, (lights.T * mass) @ lights)
+
+
 def phase_over_lights(
     alpha: Scalar,
     theta_f: Scalar,
@@ -60,7 +103,7 @@ def phase_over_lights(
     """Return ∫_Ω p_F(u, v) dω_u, the integral of the phase function over lights.
 
     The ambient model uses 1 − P_s(v) = ∫_Ω p_F(v, u) dω_u instead. The two differ, because p_F is
-    not symmetric. Only p_F(u, v) σ_F(u) is.
+    not symmetric. Only p_F(u, v) σ_F(u) is. `fuzz.lit` has a rule that is much more precise.
     """
     require_float64()
     lights, weights = hemisphere_rule(step, azimuths)

@@ -28,6 +28,61 @@ def ambient_layer(mean: Colour, albedo: Colour, scattering: Scalar, scattered: S
     return jnp.asarray(albedo) * scattering * (1 - jnp.asarray(scattered)) * jnp.asarray(mean)
 
 
+def lit_fraction(scattered: Scalar, cos_vt: Scalar, alpha: Scalar) -> Array:
+    """Return E_lit(v) approximately, the integral of p(u, v) over the lights u above the horizon.
+
+    `scattered` is P_s(v) in [0, 1], `cos_vt` is v·t, and `alpha` in (0, 1] the roughness. The value
+    is 1 − P_s times √(σ²/(1 − κā²)), which stands for the mean of σ(v)/σ(u), with κ = 1 − α²,
+    σ² = 1 − κ(v·t)², and ā² for the mean of (u·t)². It is 1 − P_s at α = 1 and as α → 0, as the
+    exact one is (docs/ambient-light.md). Both constants were fitted to exact values.
+    """
+    return _lit(_LIT_FRACTION, 1 - jnp.asarray(scattered), cos_vt, alpha)
+
+
+def ambient_layer_lit(
+    mean: Colour,
+    albedo: Colour,
+    scattering: Scalar,
+    scattered: Scalar,
+    cos_vt: Scalar,
+    cos_nt: Scalar,
+    alpha: Scalar,
+) -> Array:
+    """Return the radiance of the layer towards v with both errors of `ambient_layer` corrected.
+
+    The first four arguments are those of `ambient_layer`. `cos_vt` is v·t, `cos_nt` is n·t, and
+    `alpha` in (0, 1] the roughness. All are unit vectors. The value is the same for t and −t.
+
+    E_lit replaces 1 − P_s, as in `lit_fraction`. The factor that follows it stands for the
+    correlation of the phase function with the kernel of G: the light that is scattered to v does
+    not come at the mean cosine of the hemisphere. docs/ambient-light.md states the error.
+    """
+    # notation: up = 1 − P_s, areas = σ(v) σ(n).
+    alpha = jnp.asarray(alpha)
+    up, kappa = 1 - jnp.asarray(scattered), (1 - alpha) * (1 + alpha)
+    view2, normal2 = (1 - kappa * jnp.asarray(each) ** 2 for each in (cos_vt, cos_nt))
+    areas = jnp.sqrt(view2 * normal2)
+    level, slope = _CORRELATION
+    corrected = scattering * (level + slope * up * areas)
+    return jnp.asarray(albedo) * _lit(_LIT_LAYER, up, cos_vt, alpha) * corrected * mean
+
+
+# The constants k₀ and k₁ in ā² = (v·t)² (1 − k₀α) + k₁ α (1 − P_s). The first are fitted to E_lit,
+# the second, together with the correlation, to the radiance of the layer in uniform light
+# (tests/shading/test_ambient_lit.py). 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
+_LIT_FRACTION = (1.3, 0.834)
+_LIT_LAYER = (1.3153, 0.9782)
+_CORRELATION = (0.8458, 0.3296)
+
+
+def _lit(constants: tuple[float, float], up: Array, cos_vt: Scalar, alpha: Scalar) -> Array:
+    """Return up √(σ²/(1 − κā²)), where `up` is 1 − P_s."""
+    alpha = jnp.asarray(alpha)
+    square, kappa = jnp.asarray(cos_vt) ** 2, (1 - alpha) * (1 + alpha)
+    mean_square = square * (1 - constants[0] * alpha) + constants[1] * alpha * up
+    return up * jnp.sqrt((1 - kappa * square) / (1 - kappa * mean_square))
+
+
 def ambient_attenuation(
     cos_v: Scalar,
     density: Scalar,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from integrals import PS, G, Q
-from integrals.fuzz.radiance import base_response, layer_albedo, layer_response
+from integrals.fuzz.radiance import base_response, layer_albedo, layer_moments, layer_response
 from shading import (
     ambient_attenuation,
     ambient_layer,
@@ -128,3 +128,46 @@ def test_ambient_model_is_exact_for_isotropic_fibres_in_uniform_light():
     unscattered, scattered = (part[0] @ UNIFORM for part in bases([1.0], [0.4], [density]))
     below = base / np.pi * escape(np.cos(theta_v), density) * (unscattered + albedo * scattered)
     np.testing.assert_allclose(model, albedo * (response @ UNIFORM) + below, atol=RULE)
+
+
+# The moments of the layer
+
+# (α, θf, d, θv, φ), M0 and M1/M0, from a rule of which two step sizes agree.
+PLACES = np.array(
+    [
+        (0.5, np.pi / 4, 0.2, np.pi / 3, np.pi / 3),
+        (np.sqrt(0.05), np.pi / 4, 0.2, np.arccos(0.35), np.pi / 4),
+        (np.sqrt(0.05), np.pi / 2, 0.5, np.arccos(0.1), np.pi),
+        (np.sqrt(0.5), np.radians(23), 0.1, np.arccos(0.7), np.radians(135)),
+        (1.0, 0.0, 0.2, np.pi / 3, 0.0),
+    ]
+).T
+TOTALS = (0.0694883, 0.0267475, 0.1968331, 0.0477658, 0.1241947)
+MEANS = (
+    (-0.31815, 0.17400, 0.47472),
+    (-0.63161, 0.25076, 0.29492),
+    (0.83339, 0.0, 0.30350),
+    (-0.15606, 0.05888, 0.52143),
+    (0.0, 0.0, 0.56319),
+)
+moments = batched(layer_moments, 8)
+
+
+def test_moments_of_the_layer():
+    value = moments(*PLACES)
+    np.testing.assert_allclose(value.total, TOTALS, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(value.first / value.total[:, None], MEANS, rtol=0, atol=1e-5)
+    np.testing.assert_allclose(np.trace(value.second, axis1=1, axis2=2), value.total, rtol=1e-12)
+
+
+def test_moments_give_the_radiance_in_light_of_nine_harmonics():
+    points = materials(11, 8)
+    value, response = moments(*points), layers(*points)
+    np.testing.assert_allclose(response[:, 0], value.total * np.sqrt(1 / (4 * np.pi)), rtol=1e-12)
+    linear = value.first[:, [1, 2, 0]] * np.sqrt(3 / (4 * np.pi))
+    np.testing.assert_allclose(response[:, 1:4], linear, rtol=0, atol=1e-13)
+    xx, yy, zz = (value.second[:, i, i] for i in range(3))
+    xy, yz, xz = (value.second[:, i, j] for i, j in ((0, 1), (1, 2), (0, 2)))
+    scale = np.sqrt(15 / (4 * np.pi))
+    quadratic = [xy, yz, (2 * zz - xx - yy) / np.sqrt(12), xz, (xx - yy) / 2]
+    np.testing.assert_allclose(response[:, 4:].T, scale * np.stack(quadratic), rtol=0, atol=1e-13)
