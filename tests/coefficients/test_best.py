@@ -46,6 +46,8 @@ def slow_for(*some: str) -> list:
 SEED, EXPONENT = 20240229, 8
 # Values near one are rounded by a few units in the last place.
 ROUNDING = 2e-15
+# An error that is not proven but searched for may be found larger by so much.
+SEARCHED = 1.5e-3
 # The mean square of a sample is within so many of its own standard errors of the stated one.
 STANDARD_ERRORS = 5.0
 
@@ -86,7 +88,8 @@ def faults(fitted: FittedForm, entry: Entry) -> Iterator[str]:
     points, exact = sample(name, fitted.axes)
     values = form_values(fitted, points)
     error = np.abs(values - exact)
-    if not error.max() <= stated.max * (1 + 1e-9) + ROUNDING:
+    searched = 1e-9 if table.certificates.largest_error else SEARCHED
+    if not error.max() <= stated.max * (1 + searched) + ROUNDING:
         yield f"an error is {error.max()}, above the largest, {stated.max}"
     square = error[: 2**EXPONENT] ** 2
     tolerance = STANDARD_ERRORS * np.std(square) / np.sqrt(len(square))
@@ -181,13 +184,7 @@ QUOTIENTS = (
 # A proven lower bound is at most so far below the largest error, as README says.
 GAP = 0.005
 # Fits of forms with a proven lower bound that are further above it.
-NOT_LEAST = {
-    "best/skin-cylinder-green-63": 0.08,
-    "best/skin-cylinder-blue-63": 0.012,
-    "best/skin-sphere-red-63": 0.022,
-    "best/skin-sphere-green-63": 0.008,
-    "best/skin-sphere-blue-63": 0.01,
-}
+NOT_LEAST = {"best/skin-cylinder-green-63": 0.075}
 # Fits whose largest error elsewhere is further above that at their own points.
 NOT_SETTLED = {"best/ps-11": 0.006, "best/ggx-scale-83": 0.006, "best/ggx-bias-93": 0.012}
 # A change of one coefficient by one per cent can be undone, to first order.
@@ -281,7 +278,8 @@ def test_a_changed_coefficient_is_noticed(name, factor):
     entry = resolve(name)
     form, constants = entry.require_fitted().form, np.ravel(entry.require_fitted().constants)
     unnoticed = []
-    for index in np.flatnonzero(constants):
+    # A smaller coefficient changes values by less than 1e-10: it is as good as none.
+    for index in np.flatnonzero(np.abs(constants) > 2e-7):
         changed = constants.copy()
         changed[index] *= factor
         if not is_noticed(form.fitted(changed), entry):

@@ -22,7 +22,7 @@ from quantities import problem, problems
 
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias")
-_SKIN = tuple(f"skin-cylinder-{channel}" for channel in ("blue", "green", "red"))
+_SKIN = tuple(f"skin-cylinder-{channel}" for channel in ("red", "green", "blue"))
 PUBLISHED = ("ps", "g", "q", "r", *_GGX, "sggx-filter", "sggx-filter-axes", *_SKIN)
 # Constants of two sources are in print for these.
 SECOND = ("sggx-filter-lean", "sggx-filter-axes-lean")

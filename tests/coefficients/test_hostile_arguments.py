@@ -123,4 +123,4 @@ def test_no_point_of_the_domain_is_lost_in_half(name):
     entry = resolve(name)
     points = sobol_points(entry.axes, 15, 20200718)
     run = replace(trial_of(entry, "half", 4), points=points).emulated(np.float16)
-    assert_in_codomain(run)
+    assert_in_codomain(run, name)

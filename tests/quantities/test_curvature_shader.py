@@ -48,5 +48,5 @@ def test_values_are_finite_for_hostile_numbers(name, dtype):
 
 def test_they_are_no_quantities():
     assert not set(CURVATURES) & set(problems())
-    with pytest.raises(ValueError, match="no curvature is called 'curvature/x': allowed are"):
+    with pytest.raises(ValueError, match="no function is called 'curvature/x': allowed are"):
         resolve("curvature/x")
