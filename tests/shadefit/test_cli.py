@@ -89,9 +89,9 @@ def test_evaluate_gives_every_leg_within_its_error(capsys, name):
     for leg_name, leg in result["legs"].items():
         allowed = 5 * leg["error"] if leg_name == "monte_carlo" else leg["error"]
         assert abs(leg["value"] - exact["value"]) <= allowed + exact["error"]
-    # The worst published table, P_s, is off by at most 0.14.
+    # Published P_s is off by at most 0.14, and the published filters are the only worse ones.
     for table in result["tables"]:
-        assert abs(table["difference"]) < 0.15
+        assert abs(table["difference"]) < (0.42 if name.startswith("sggx") else 0.15)
     best = [each.name for each in entries(problems()[name]) if each.kind == "best"]
     assert [table["label"] for table in result["tables"] if table["kind"] == "best"] == best
 

@@ -50,7 +50,7 @@ def test_the_documentation_names_every_command_and_field():
         for name, definition in definitions.items()
         if name.endswith("Output")
     ]
-    assert len(commands) == 18
+    assert len(commands) == 19
     for command in commands:
         assert f"`{command}`" in text
 
