@@ -116,7 +116,7 @@ def draw_colors() -> Figure:
     figure = Figure(figsize=(9.2, 3.6), layout="constrained")
     panels = figure.subplots(1, len(_SURFACES), sharey=True)
     f0 = _NORMAL_REFLECTANCES
-    fresnel = np.asarray(schlick_average(f0))
+    fresnel = np.asarray(jax.vmap(schlick_average)(f0))
     split = jax.jit(fresnel_split)
     average = jax.jit(average_albedo)
     for panel, (alpha, mu) in zip(panels, _SURFACES, strict=True):

@@ -123,7 +123,7 @@ def _radiance(environment, normal, view, numbers, metal, table, average, multipl
     level, angle = jnp.sqrt(1 - numbers[2]), 2 * jnp.pi * numbers[3]
     diffuse = jnp.stack([level * jnp.cos(angle), level * jnp.sin(angle), height])
     missing = (1 - _albedo(table, local[2])) * (1 - _albedo(table, height)) / (1 - average)
-    color = jax.vmap(color_of_walk, (0, None))(schlick_average(f0), average)
+    color = jax.vmap(color_of_walk, (0, None))(jax.vmap(schlick_average)(f0), average)
     return single + multiple * color * missing * environment(diffuse @ frame)
 
 
