@@ -28,8 +28,9 @@ _Detail = Annotated[
 
 
 @detail.command(
+    "compensate",
     epilog="Example: shadefit detail compensate target.png detail.png --colour-space srgb "
-    "-o source.dds"
+    "-o source.dds",
 )
 def compensate(
     target: Annotated[Path, typer.Argument(help="The wanted image: PNG, EXR or DDS.")],
@@ -93,8 +94,9 @@ def compensate(
 
 
 @detail.command(
+    "compose",
     epilog="Example: shadefit detail compose source.dds detail.png --colour-space srgb "
-    "-o composed.png --target target.png"
+    "-o composed.png --target target.png",
 )
 def compose(
     source: Annotated[Path, typer.Argument(help="The source: PNG, EXR or DDS.")],
