@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from coefficients.packaged import Kind
 from coefficients.table import Table
 
+SCHEMA = "shadefit.output/1"
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Size = Annotated[Number, Field(ge=0)]
 Count = Annotated[int, Field(ge=0)]
@@ -22,6 +23,12 @@ class Part(BaseModel):
     """A part of a JSON object: it has no other keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Whole(Part):
+    """A whole JSON object; its class has the name of the command."""
+
+    schema_: Literal["shadefit.output/1"] = Field(alias="schema", default=SCHEMA)
 
 
 class ErrorsRecord(Part):

@@ -8,7 +8,7 @@ import typer
 from shadefit.commands.options import Json
 
 if TYPE_CHECKING:
-    from shadefit.outputs import CurvatureOutput
+    from shadefit.material_outputs import CurvatureOutput
 
 
 def curvature(
@@ -91,7 +91,7 @@ def _record(path, unit, widths, keep_concave, largest, shape, found, out) -> "Cu
     import numpy as np
 
     from shadefit.curvature.vertex_bytes import clamped_count
-    from shadefit.outputs import CurvatureOutput
+    from shadefit.material_outputs import CurvatureOutput
     from shading.curvature import packing_error
 
     half = (found.tensors[:, 0] + found.tensors[:, 2]) / 2

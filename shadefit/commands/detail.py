@@ -9,7 +9,7 @@ from shadefit.commands.options import Json
 
 if TYPE_CHECKING:
     from shadefit.detail import ComposedErrors
-    from shadefit.outputs import DetailOutput
+    from shadefit.material_outputs import DetailOutput
 
 detail = typer.Typer(help="Detail maps: compensate sources for them, and compose both.")
 
@@ -59,7 +59,7 @@ def compensate(
     from shadefit.detail import operator as operator_of
     from shadefit.detail.closed_loop import batches
     from shadefit.images import read_image, write_image
-    from shadefit.outputs import DetailOutput
+    from shadefit.material_outputs import DetailOutput
     from shadefit.progress import stages
 
     suffix = out.suffix.lower()
@@ -115,7 +115,7 @@ def compose(
     from shadefit.detail import composed_image, errors_between
     from shadefit.detail import operator as operator_of
     from shadefit.images import read_image, require_same_size, write_image
-    from shadefit.outputs import DetailOutput
+    from shadefit.material_outputs import DetailOutput
 
     if out.suffix.lower() not in (".png", ".exr"):
         raise ValueError(f"--out {out}: allowed are the files .png, .exr")

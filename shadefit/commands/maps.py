@@ -55,7 +55,7 @@ def filter_files(
     from coefficients.files import require_writable
     from shadefit.maps.files import read_lobe_map, write_chain
     from shadefit.maps.filters import filter_chain
-    from shadefit.outputs import MapLevel, MapsFilterOutput
+    from shadefit.material_outputs import MapLevel, MapsFilterOutput
     from shadefit.progress import stages
     from shadefit.terminal import print_json, print_table
 
@@ -117,7 +117,7 @@ def errors(
     from shadefit.maps.errors import filter_errors
     from shadefit.maps.filters import FILTERS
     from shadefit.maps.synthetic import MAPS
-    from shadefit.outputs import MapErrors, MapsErrorsOutput
+    from shadefit.material_outputs import MapErrors, MapsErrorsOutput
     from shadefit.progress import stages
     from shadefit.terminal import print_json, print_table
 

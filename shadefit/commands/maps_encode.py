@@ -53,7 +53,7 @@ def encode(
     )
     from shadefit.images.reading import read_image
     from shadefit.maps.aniso_map import encode_level, mip_entries, write_map
-    from shadefit.outputs import MapsEncodeOutput
+    from shadefit.material_outputs import MapsEncodeOutput
     from shadefit.terminal import print_json
     from shading.maps.encode import entries_of_widths
     from shading.maps.encodings import LEAST_ALPHA

@@ -12,7 +12,7 @@ from shadefit.completion import complete_language
 if TYPE_CHECKING:
     from coefficients.ndf_table import NdfBlendTable, NdfTable
     from quantities.piecewise.targets import AnisotropicTarget, Target
-    from shadefit.outputs import NdfCheck, NdfCost, NdfOutput
+    from shadefit.material_outputs import NdfCheck, NdfCost, NdfOutput
 
 
 def ndf(
@@ -73,7 +73,7 @@ def ndf(
     """
     from coefficients.files import write_whole
     from coefficients.ndf_table import serialise_ndf
-    from shadefit.outputs import NdfCheck
+    from shadefit.material_outputs import NdfCheck
     from shadefit.terminal import print_json
 
     _require(linear_in, to, code, verify, out)
@@ -141,7 +141,7 @@ def _output(
     costs: "list[NdfCost]",
 ) -> "NdfOutput":
     from coefficients.ndf_table import NdfTable
-    from shadefit.outputs import NdfOutput, NdfProfile
+    from shadefit.material_outputs import NdfOutput, NdfProfile
 
     isotropic = isinstance(table, NdfTable)
     first = table if isotropic else table.x
@@ -167,7 +167,7 @@ def _output(
 
 def _costs(table: "NdfTable | NdfBlendTable") -> "list[NdfCost]":
     from coefficients.ndf_cost import ndf_costs
-    from shadefit.outputs import NdfCost, NdfLookup
+    from shadefit.material_outputs import NdfCost, NdfLookup
 
     return [
         NdfCost(

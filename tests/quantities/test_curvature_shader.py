@@ -5,8 +5,7 @@ import pytest
 
 from coefficients.catalogue import resolve
 from coefficients.exported_code import trial_of
-from programs import LANGUAGES, check, evaluate, precision_of, toolchain, trace
-from quantities import problems
+from programs import check, evaluate, toolchain, trace
 from quantities.curvature import CURVATURES
 
 NAMES = [f"curvature/{name}" for name in CURVATURES]
@@ -21,18 +20,6 @@ def test_code_in_c_passes(name):
     assert result.form.not_finite == 0
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("key", LANGUAGES)
-@pytest.mark.parametrize("name", NAMES)
-def test_code_passes_in_every_language(name, key):
-    precision = precision_of(key, None)
-    reason = toolchain(key).missing(precision)
-    if reason is not None:
-        pytest.skip(reason)
-    result = check(trial_of(resolve(name), precision, 10), key)
-    assert result.status == "passed", result.reason
-
-
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("dtype", [np.float32, np.float16])
 def test_values_are_finite_for_hostile_numbers(name, dtype):
@@ -44,9 +31,3 @@ def test_values_are_finite_for_hostile_numbers(name, dtype):
     )
     found = evaluate(program, inputs, dtype)
     assert np.isfinite(found).all()
-
-
-def test_they_are_no_quantities():
-    assert not set(CURVATURES) & set(problems())
-    with pytest.raises(ValueError, match="no function is called 'curvature/x': allowed are"):
-        resolve("curvature/x")

@@ -8,7 +8,7 @@ import pytest
 
 from coefficients.catalogue import resolve
 from coefficients.exported_code import trial_of
-from programs import LANGUAGES, check, evaluate, precision_of, toolchain, trace
+from programs import check, evaluate, toolchain, trace
 from quantities.detail import OPERATORS
 from shading import detail
 
@@ -55,20 +55,3 @@ def test_code_in_c_passes():
     assert result.status == "passed", result.reason
     # Where the detail is near 0, a rounding of the target moves the source by its root.
     assert result.allowed.largest < 1e-3
-
-
-def test_other_names_are_refused():
-    with pytest.raises(ValueError, match="no function is called 'detail/odds': allowed are detail"):
-        resolve("detail/odds")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("key", LANGUAGES)
-@pytest.mark.parametrize("name", NAMES)
-def test_code_passes_in_every_language(name, key):
-    precision = precision_of(key, None)
-    reason = toolchain(key).missing(precision)
-    if reason is not None:
-        pytest.skip(reason)
-    result = check(trial_of(resolve(name), precision, 10), key)
-    assert result.status == "passed", result.reason

@@ -18,7 +18,7 @@ from shadefit.maps.encoding_errors import (
     random_points,
     worst_texel,
 )
-from shadefit.outputs import MapsEncodeOutput
+from shadefit.material_outputs import MapsEncodeOutput
 from shading.maps.encode import entries_of_widths
 from shading.maps.total_variation import total_variation
 
