@@ -1,10 +1,14 @@
 """Float64 for every test, as the entry points set it; the same drawn examples in every run."""
 
+import re
+
 import jax
 import pytest
 from hypothesis import settings
 
 jax.config.update("jax_enable_x64", True)
+
+ALIKE = re.compile(r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))")
 
 # A run that fails must fail again on the next machine. `--hypothesis-profile default` draws others.
 settings.register_profile("repeatable", derandomize=True)
@@ -13,7 +17,11 @@ settings.load_profile("repeatable")
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Call every test in a browser slow, since the page takes half a minute to make."""
+    """Call slow what takes long, or what another test stands for.
+
+    The page of tests in a browser takes half a minute to make. The six quantities of skin differ in
+    numbers only: by default, red light on a cylinder stands for all.
+    """
     for item in items:
-        if "browser" in getattr(item, "fixturenames", ()):
+        if "browser" in getattr(item, "fixturenames", ()) or ALIKE.search(item.name):
             item.add_marker(pytest.mark.slow)
