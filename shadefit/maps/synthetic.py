@@ -11,24 +11,9 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from shadefit.maps.filters import LobeMap
+from shading.maps.encode import entries_of_widths
 
 Slopes = np.ndarray
-Values = float | np.ndarray
-
-
-def widths_to_roughness(along: Values, across: Values, angle: Values) -> np.ndarray:
-    """Return the roughness (…, 3) of widths α_t and α_b; `angle` is that of the tangent."""
-    along, across, angle = np.broadcast_arrays(along, across, angle)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    a, b = along**2, across**2
-    return np.stack(
-        [
-            a * cosine**2 + b * sine**2,
-            (a - b) * cosine * sine,
-            a * sine**2 + b * cosine**2,
-        ],
-        axis=-1,
-    )
 
 
 def slopes_to_normals(slopes: Slopes) -> np.ndarray:
@@ -65,7 +50,7 @@ def bumps(size: int, seed: int, *, slope: float, width: float) -> tuple[Slopes, 
     """Return smooth bumps of the rms `slope` (both axes together) and GGX of α = `width`."""
     slopes = _differences(_noise(size, np.random.default_rng(seed), 3.0, 3.0))
     slopes = slopes * slope / np.sqrt(np.mean(np.sum(slopes * slopes, axis=-1)))
-    return slopes, widths_to_roughness(width, width, np.zeros((size, size)))
+    return slopes, entries_of_widths(width, width, np.zeros((size, size)))
 
 
 def weave(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
@@ -83,7 +68,7 @@ def weave(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
     slopes = np.stack([np.where(warp, across, along), np.where(warp, along, across)], axis=-1)
     slopes = slopes + 0.03 * rng.standard_normal(slopes.shape)
     angle = np.where(warp, np.pi / 2, 0.0) + 0.1 * _noise(size, rng, 2.0, 2.0)
-    return slopes, widths_to_roughness(0.15, 0.35, angle)
+    return slopes, entries_of_widths(0.15, 0.35, angle)
 
 
 def scratches(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
@@ -103,7 +88,7 @@ def scratches(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
         inside = (np.abs(distance) < 2) & reach
         slopes[inside] = -rng.uniform(0.15, 0.6) * np.sign(distance[inside])[:, None] * normal
         width[inside] = 0.15
-    return slopes, widths_to_roughness(width, width, np.zeros((size, size)))
+    return slopes, entries_of_widths(width, width, np.zeros((size, size)))
 
 
 def foil(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
@@ -114,7 +99,7 @@ def foil(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
     tilts = 0.3 * rng.standard_normal((count, 2))
     x, y = _grid(size)
     cell = KDTree(sites, boxsize=size).query(np.stack([x, y], axis=-1))[1]
-    return tilts[cell], widths_to_roughness(0.1, 0.1, np.zeros((size, size)))
+    return tilts[cell], entries_of_widths(0.1, 0.1, np.zeros((size, size)))
 
 
 def brushed(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
@@ -122,7 +107,7 @@ def brushed(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
     rng = np.random.default_rng(seed)
     across = 0.2 * _noise(size, rng, 40.0, 0.7)
     slopes = np.stack([0.02 * rng.standard_normal((size, size)), across], axis=-1)
-    return slopes, widths_to_roughness(0.08, 0.2, 0.05 * _noise(size, rng, 20.0, 1.0))
+    return slopes, entries_of_widths(0.08, 0.2, 0.05 * _noise(size, rng, 20.0, 1.0))
 
 
 def spun(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
@@ -131,7 +116,7 @@ def spun(size: int, seed: int) -> tuple[Slopes, np.ndarray]:
     x, y = _grid(size)
     centre = size * rng.uniform(0.4, 0.6, 2)
     angle = np.arctan2(y - centre[1], x - centre[0]) + np.pi / 2
-    return np.zeros((size, size, 2)), widths_to_roughness(0.08, 0.35, angle)
+    return np.zeros((size, size, 2)), entries_of_widths(0.08, 0.35, angle)
 
 
 def weak_bumps(size: int, seed: int) -> tuple[Slopes, np.ndarray]:

@@ -14,11 +14,14 @@ Texels = Float[np.ndarray, "*texels 3"]
 Numbers = Float[np.ndarray, "*texels"]
 
 
-def entries_of_widths(alpha_t: Numbers, alpha_b: Numbers, theta: Numbers) -> Texels:
+def entries_of_widths(
+    alpha_t: Numbers | float, alpha_b: Numbers | float, theta: Numbers | float
+) -> Texels:
     """Return (Sxx, Sxy, Syy) from the widths along a tangent at the angle θ (rad), and across it.
 
-    Either width may be the larger one.
+    Either width may be the larger one. A number stands for all texels.
     """
+    alpha_t, alpha_b, theta = np.broadcast_arrays(alpha_t, alpha_b, theta)
     cos, sin = np.cos(theta), np.sin(theta)
     along, across = np.square(alpha_t), np.square(alpha_b)
     return np.stack(

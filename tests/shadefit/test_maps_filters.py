@@ -16,8 +16,9 @@ from shadefit.maps.lobes import (
     slope_moments,
 )
 from shadefit.maps.moments import widened
-from shadefit.maps.synthetic import MAPS, synthetic_map, widths_to_roughness
+from shadefit.maps.synthetic import MAPS, synthetic_map
 from shadefit.maps.tables import WIDENING, widening
+from shading.maps.encode import entries_of_widths
 from shading.maps.extraction import lobe_of_matrix
 from shading.maps.lobe import lobe_matrix
 
@@ -60,8 +61,8 @@ def test_a_groove_that_is_too_steep_keeps_the_normal_and_a_width_of_one():
 
 
 def test_widths_are_limited_and_axes_stay():
-    wide = widths_to_roughness(1.5, 0.5, 0.7)
-    assert np.allclose(limited(wide[None])[0], widths_to_roughness(1.0, 0.5, 0.7), atol=1e-14)
+    wide = entries_of_widths(1.5, 0.5, 0.7)
+    assert np.allclose(limited(wide[None])[0], entries_of_widths(1.0, 0.5, 0.7), atol=1e-14)
 
 
 @pytest.mark.parametrize("method", FILTERS)
@@ -114,14 +115,14 @@ def test_the_widening_is_that_of_its_table():
 
 def test_a_spread_lobe_is_widened_along_its_axes():
     spread, covariance = (
-        widths_to_roughness(0.3, 0.1, 0.4),
-        0.02 * widths_to_roughness(1.0, 1.0, 0.0),
+        entries_of_widths(0.3, 0.1, 0.4),
+        0.02 * entries_of_widths(1.0, 1.0, 0.0),
     )
     found = widened(spread[None], covariance[None])[0]
     t = np.array([0.02 / 0.09, 0.02 / 0.01])
     u = t / (1 + t)
     ratios = (1 + t) * widening(u, u[::-1])
-    expected = widths_to_roughness(0.3 * ratios[0] ** 0.5, 0.1 * ratios[1] ** 0.5, 0.4)
+    expected = entries_of_widths(0.3 * ratios[0] ** 0.5, 0.1 * ratios[1] ** 0.5, 0.4)
     assert np.allclose(found, expected, rtol=1e-12)
 
 
