@@ -66,7 +66,9 @@ def test_the_points_that_judge_are_fixed_and_on_no_grid():
 
 
 def test_enough_points_judge_that_the_largest_error_is_nearly_found():
-    assert min(each.sampling.judged for each in REFERENCES.values()) >= 12
+    for each in REFERENCES.values():
+        # Along one axis, half as many are as dense as 2²² over two.
+        assert each.sampling.judged >= (11 if len(each.axes) == 1 else 12)
     assert len(judging_points(RATIONAL_R)[0]) == 2**12
 
 

@@ -91,7 +91,8 @@ def test_lines_of_a_note_are_kept_and_an_empty_cell_below_left_out(capsys):
 
 
 def test_an_interruption_leaves_one_clean_line(tmp_path):
-    session = Session("refit", "ps", "g", "--out", str(tmp_path))
+    # What is left after g takes seconds, so that the interruption does not come too late.
+    session = Session("refit", "ps", "g", "ggx-scale", "ggx-bias", "--out", str(tmp_path))
     session.read_until("ps: ")
     session.read_until("g: ")
     session.type("\x03")
