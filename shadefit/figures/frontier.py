@@ -16,6 +16,8 @@ from shadefit.figures.style import COLOURS, KINDS, MARKERS
 from shadefit.figures.values import error_text, hints_of, math_symbol
 
 _GGX = "microfacet"
+# The tables of these are few and of one form each: README lists them.
+_LISTED = ("maps", "skin")
 # The marker of the published table is large and hollow, so that a refit at the same place is seen
 # inside it.
 _SIZES = {"exact": 110, "published": 90}
@@ -45,16 +47,20 @@ _OFFSETS = tuple(
 def drawn_quantities(ggx: bool) -> list[Problem]:
     """List the quantities that have a panel: those with two marks or more to compare.
 
-    They are those of GGX, or all others.
+    They are those of GGX, or all others but those of maps and skin.
     """
-    owners = [owner for owner in problems().values() if (owner.topic == _GGX) == ggx]
+    owners = [
+        owner
+        for owner in problems().values()
+        if (owner.topic == _GGX) == ggx and owner.topic not in _LISTED
+    ]
     return [owner for owner in owners if len(marks(owner)) > 1]
 
 
 def draw_frontier(ggx: bool = False) -> Figure:
     """Draw the largest error of every table against its operations, one panel per quantity.
 
-    The quantities are those of GGX, or all others.
+    The quantities are those of `drawn_quantities`.
     A closed form that costs far more than every table is written below the panel, because it would
     squeeze the tables.
     """

@@ -3,6 +3,7 @@
 from functools import partial
 
 from quantities import Problem, problems
+from quantities.skin import SKIN_QUANTITIES
 from shadefit.figures.curves import draw_curves
 from shadefit.figures.detail_maps import detail_pictures
 from shadefit.figures.encodings import encoding_pictures
@@ -39,12 +40,14 @@ _GGX_FRONTIER = Picture(
 def pictures() -> dict[str, Picture]:
     """Return all pictures, by name.
 
-    A quantity whose pictures are not declared gets errors-NAME if it has one or two axes.
+    A quantity whose pictures are not declared gets errors-NAME if it has one or two axes. The
+    quantities of skin look alike: only the first gets one.
     """
+    shown = (*DRAWN, *SKIN_QUANTITIES[1:])
     others = {
         f"errors-{owner.name}": errors_picture(owner)
         for owner in problems().values()
-        if owner not in DRAWN and len(owner.axes) in _DRAW
+        if owner not in shown and len(owner.axes) in _DRAW
     }
     topics = {
         **fuzz_pictures(),

@@ -529,7 +529,7 @@ def test_committed_pictures_are_small_and_can_be_read():
         svg = (DOCS / "figures" / f"{name}.svg").read_bytes()
         ElementTree.fromstring(svg)
         total += len(png) + len(svg)
-    assert total < 15_000_000
+    assert total < 13_500_000
 
 
 @pytest.mark.slow

@@ -243,4 +243,4 @@ def test_the_command_writes_everything(tmp_path):
     assert text.count("data:image/png;base64,") == len(pictures())
     for owner in with_published():
         assert f'<th scope="row">published/{owner.name}</th>' in text
-    assert len(text) < 8 << 20
+    assert len(text) < 10 << 20
