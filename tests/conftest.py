@@ -8,7 +8,9 @@ from hypothesis import settings
 
 jax.config.update("jax_enable_x64", True)
 
-ALIKE = re.compile(r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))")
+SLOW_NAMES = re.compile(
+    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))|sggx-filter|ggx-(scale|bias)"
+)
 
 # A run that fails must fail again on the next machine. `--hypothesis-profile default` draws others.
 settings.register_profile("repeatable", derandomize=True)
@@ -20,8 +22,9 @@ def pytest_collection_modifyitems(items):
     """Call slow what takes long, or what another test stands for.
 
     The page of tests in a browser takes half a minute to make. The six quantities of skin differ in
-    numbers only: by default, red light on a cylinder stands for all.
+    numbers only: by default, red light on a cylinder stands for all. The exact values of filtered
+    lobes, and of A and B of GGX, take long to compile.
     """
     for item in items:
-        if "browser" in getattr(item, "fixturenames", ()) or ALIKE.search(item.name):
+        if "browser" in getattr(item, "fixturenames", ()) or SLOW_NAMES.search(item.name):
             item.add_marker(pytest.mark.slow)

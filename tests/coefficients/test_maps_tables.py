@@ -31,6 +31,7 @@ def test_a_table_states_its_error_and_has_no_pole(name, size, most):
     assert table.certificates.denominator_bound > 0
 
 
+@pytest.mark.slow
 def test_the_filters_in_print_have_the_stated_relative_errors():
     exact = SGGX_FILTER.values(SHARES)
     talk, lean = (relative(f"published/sggx-filter{x}", SHARES, exact) for x in ("", "-lean"))

@@ -18,6 +18,7 @@ def of(folder, quantity: str = "q", budget: int | None = 5, **options) -> Search
     return Search(problem(quantity), options.pop("goal", GOAL), folder, budget, **options)
 
 
+@pytest.mark.slow
 def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, monkeypatch):
     told = []
     found = of(tmp_path).run(lambda *step: told.append(step))

@@ -135,6 +135,7 @@ def test_a_fit_states_the_errors_at_every_node_and_light():
     assert found.on_grid.points == 81 * COUNT**2
 
 
+@pytest.mark.slow
 def test_a_fit_says_how_it_was_made():
     found, stages = together()
     assert (found.measure, found.inner) == ("solid-angle", COUNT**2)

@@ -33,6 +33,7 @@ def test_known_ratios(t, ratio):
     assert float(found.value) * (1 + t) == pytest.approx(ratio, rel=5e-7)
 
 
+@pytest.mark.slow
 def test_ends():
     assert widening(0.0).value == pytest.approx(1, abs=1e-13)
     assert widening(1.0).value == pytest.approx(MIRROR, rel=1e-9)
@@ -81,6 +82,7 @@ def test_first_order_in_the_spread():
     assert (across - none) / step == pytest.approx(0.25, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_the_derivative_is_that_of_the_root():
     step = 1e-5
     slope = jax.grad(lambda u: widening(u).value)(0.5)

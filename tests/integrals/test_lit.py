@@ -158,6 +158,7 @@ def test_derivatives():
         np.testing.assert_allclose(gradient[axis], slope, rtol=0, atol=3e-6)
 
 
+@pytest.mark.slow
 def test_derivatives_are_finite_on_the_whole_domain():
     points = awkward_points(10, 96, 1e-3)
     ends = np.stack(

@@ -66,6 +66,7 @@ def view(mu) -> np.ndarray:
     return np.array([np.sqrt((1 - mu) * (1 + mu)), 0.0, mu])
 
 
+@pytest.mark.slow
 def test_ellipse_agrees_with_the_integral_over_the_cosine():
     alpha, mu = POINTS
     value, error = ellipse()(alpha, alpha, np.arccos(mu), np.linspace(0, 3, len(mu)))

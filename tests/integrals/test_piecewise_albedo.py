@@ -23,6 +23,7 @@ _albedo = jax.jit(directional_albedo, static_argnames="nodes")
 
 
 @pytest.mark.parametrize("theta_o", [0.2, 1.4])
+@pytest.mark.slow
 def test_the_albedo_converges(theta_o):
     fine = float(_albedo(NDF, theta_o, nodes=24))
     assert abs(float(_albedo(NDF, theta_o)) - fine) < 1e-8

@@ -37,6 +37,7 @@ def test_equations_5_and_15():
 
 
 @pytest.mark.parametrize(("theta_o", "phi_o"), DIRECTIONS)
+@pytest.mark.slow
 def test_equations_16_23_26_and_27_are_the_parts_of_the_visible_area(theta_o, phi_o):
     ndf = random_blend(6)
     parts = visible_area(ndf, theta_o, phi_o)

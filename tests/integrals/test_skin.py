@@ -163,6 +163,7 @@ def test_harmonics_are_moments_of_the_light_on_a_sphere():
         np.testing.assert_allclose(moments.T, harmonic_factors(SKIN, 1 / r), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_harmonics_have_no_jump_and_the_right_limits():
     for width in (0.5**0.5, 1.4142):
         below, above = (np.asarray(lobe_harmonics(width * f)) for f in (1 - 1e-9, 1 + 1e-9))

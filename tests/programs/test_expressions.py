@@ -116,6 +116,7 @@ def in_jax(function, rows):
 
 @settings(max_examples=20, deadline=None)
 @given(TREES, TREES)
+@pytest.mark.slow
 def test_a_program_computes_what_jax_computes(one, other):
     function = function_of(one, other)
     rows = points(16)

@@ -129,6 +129,7 @@ def test_folding_for_code_is_not_changed():
     size=st.tuples(*[st.sampled_from([1e-9, 0.03, 0.6, 3.0])] * INPUTS),
     places=st.lists(st.tuples(*[st.floats(0, 1)] * INPUTS), min_size=8, max_size=8),
 )
+@pytest.mark.slow
 def test_what_is_certified_is_defined_wherever_it_is_evaluated(recipe, corner, size, places):
     program = built(recipe)
     box = np.stack([corner, np.array(corner) + size], axis=1)

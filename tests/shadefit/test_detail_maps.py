@@ -50,6 +50,7 @@ def test_packed_blocks_mean_the_same_to_an_independent_decoder():
     np.testing.assert_array_equal(blocks_of(pixels_of(colours, 128, 128)), colours)
 
 
+@pytest.mark.slow
 def test_the_closed_loop_is_better_than_an_encoder_of_the_source():
     target, detail = _pictures()
     for each in (OPERATORS["overlay"], OPERATORS["smooth-overlay"]):

@@ -164,6 +164,7 @@ def test_the_page_evaluates_the_exported_functions_of_every_table():
     require_the_same(list(problems().values()))
 
 
+@pytest.mark.slow
 def test_the_page_clamps_as_the_exported_functions_do():
     # α and θf below the domain of the table are clamped for c₀ … c₅, but not in u·t.
     owner, entry = problem("ps"), resolve("published/ps")

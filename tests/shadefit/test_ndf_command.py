@@ -16,6 +16,7 @@ def run(*arguments) -> int:
     return ended.value.code
 
 
+@pytest.mark.slow
 def test_a_table_is_read(tmp_path, capsys):
     table = {"schema": "shadefit.ndf/1", "target": "steps", "linear_in": "cos2", "monotone": True}
     table |= {"knots": [0.0, 1.0, math.pi / 2], "values": [0.5, 0.25, 0.0], "mass": 1.0}
@@ -34,6 +35,7 @@ def test_a_table_is_read(tmp_path, capsys):
     assert "NdfVisibleNormal" in printed
 
 
+@pytest.mark.slow
 def test_the_cost_beside_textures_is_stated(tmp_path, capsys):
     table = {"schema": "shadefit.ndf/1", "target": "steps", "linear_in": "cos2", "monotone": True}
     table |= {"knots": [0.0, 1.0, math.pi / 2], "values": [0.5, 0.25, 0.0], "mass": 1.0}

@@ -48,6 +48,7 @@ def test_the_python_reader():
         assert found == pytest.approx(expected(entry), rel=RELATIVE)
 
 
+@pytest.mark.slow
 def test_the_javascript_reader(tmp_path):
     node = shutil.which("node")
     if node is None:

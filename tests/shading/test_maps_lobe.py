@@ -126,6 +126,7 @@ def test_widths_are_limited_and_axes_stay():
     assert np.allclose(limited(wide), roughness_matrix(1.0, 0.5, 0.7), atol=1e-14)
 
 
+@pytest.mark.slow
 def test_derivatives_are_finite_for_equal_widths():
     def of_widths(a, b, angle):
         normal, rough = lobe_of_matrix(lobe_matrix(NORMALS[1], roughness_matrix(a, b, angle)))

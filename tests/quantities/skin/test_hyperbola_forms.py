@@ -74,6 +74,7 @@ def test_the_best_tables_reach_their_errors(surface, channel):
     assert risen.max() < 2 * GOALS[channel]
 
 
+@pytest.mark.slow
 def test_pesces_constants_have_the_errors_that_the_page_states():
     stated = {"red": (0.05, 0.07), "green": (0.03, 0.05), "blue": (0.02, 0.03)}
     for channel, (least, most) in stated.items():

@@ -55,6 +55,7 @@ def test_the_tangent_is_a_unit_vector_at_isotropy_and_at_signed_zeros(name):
 
 
 @pytest.mark.parametrize("name", ENCODINGS)
+@pytest.mark.slow
 def test_derivatives_are_finite_at_any_texel(name):
     numbers = [-0.0, 0.3, 0.5, 128 / 255, 1.0]
     texels = np.array([[x, y, z] for x in numbers for y in numbers for z in numbers])
