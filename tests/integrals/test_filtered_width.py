@@ -27,6 +27,7 @@ RATIOS = [
 
 
 @pytest.mark.parametrize(("t", "ratio"), RATIOS)
+@pytest.mark.slow
 def test_known_ratios(t, ratio):
     found = widening(t / (1 + t))
     # The values have seven digits.
