@@ -236,9 +236,7 @@ def test_the_command_writes_everything(tmp_path):
     assert not stopped.value.code
     text = out.read_text(encoding="utf-8")
     Outline(text)
-    with pytest.raises(SystemExit):
-        main(["report", "--out", str(tmp_path / "again.html")])
-    assert (tmp_path / "again.html").read_bytes() == out.read_bytes()
+    # That each picture has the same bytes in every run is tested for itself.
     assert text.count("<figure id=") == len(pictures())
     assert text.count("data:image/png;base64,") == len(pictures())
     for owner in with_published():
