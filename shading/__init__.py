@@ -26,6 +26,8 @@ from shading.fuzz.layer import optical_path as optical_path
 from shading.fuzz.layer import penetration as penetration
 from shading.fuzz.layer import scattering_kernel as scattering_kernel
 from shading.fuzz.phase import fiber_phase_function as fiber_phase_function
+from shading.fuzz.phase import reciprocal_phase_function as reciprocal_phase_function
+from shading.fuzz.phase import reciprocal_scale as reciprocal_scale
 from shading.fuzz.phase import velvet_lobe as velvet_lobe
 from shading.fuzz.phase import velvet_phase_function as velvet_phase_function
 from shading.harmonics import harmonics as harmonics

@@ -4,4 +4,5 @@
 SGGX matrix, `cubic_root` the root that its closed form needs, and `radiance` the integrals of the
 whole BRDF that the ambient model approximates. `lit` holds the reference E_lit, the part of uniform
 light that is scattered towards a view, and `lit_moments` where this light comes from.
+`phase_scale` solves the equation of a phase function that is reciprocal and conserves energy.
 """
