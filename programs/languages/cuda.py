@@ -1,7 +1,7 @@
 """CUDA C++: functions that can be called on the device and on the host."""
 
 from programs.languages.c_family import CPP_WORDS, MATH, SELECTION, reciprocal_root, suffixed
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 # On the device, fminf is one instruction; the function exists on the host too.
 _MATH = MATH | {"min": "fmin", "max": "fmax"}
@@ -22,6 +22,7 @@ LANGUAGE = Language(
         "gridDim warpSize half float2 float3 float4 double2 double3 double4 dim3",
     ),
     vectors={"float": "float4"},
+    triples=typed_triples({"float": "float3", "double": "double3"}),
     namespaces=True,
     prologue={precision: ("#include <math.h>",) for precision in ("float", "double")},
     array_argument="const {type} (&{name})[{size}]",

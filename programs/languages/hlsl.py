@@ -1,7 +1,7 @@
 """HLSL, shader model 6. Half has 16 bits only with the flag -enable-16bit-types."""
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 from programs.precision import PRECISIONS
 
 FUNCTIONS = spell(SHADING | {"atan2": "atan2", "rsqrt": "rsqrt"} | SELECTION)
@@ -34,6 +34,7 @@ LANGUAGE = Language(
     reserved=WORDS,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     vectors={"half": "half4", "float": "float4", "double": "double4"},
+    triples=typed_triples({"half": "half3", "float": "float3", "double": "double3"}),
     namespaces=True,
     prologue=dict.fromkeys(PRECISIONS, ()),
     array_argument="in {type} {name}[{size}]",

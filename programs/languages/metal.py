@@ -1,7 +1,7 @@
 """The Metal shading language."""
 
 from programs.languages.c_family import CPP_WORDS, SELECTION, SHADING
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     {
@@ -30,6 +30,7 @@ LANGUAGE = Language(
     scalar_head="inline {type} {function}({arguments})",
     array_head="inline void {function}({arguments})",
     vectors={"half": "half4", "float": "float4"},
+    triples=typed_triples({"half": "half3", "float": "float3"}),
     namespaces=True,
     prologue={precision: ("#include <metal_stdlib>",) for precision in ("half", "float")},
     array_argument="thread const {type} (&{name})[{size}]",

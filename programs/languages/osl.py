@@ -1,7 +1,7 @@
 """The Open Shading Language. It has only floats, and no constant variables."""
 
 from programs.languages.c_family import SELECTION, SHADING
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 LANGUAGE = Language(
     key="osl",
@@ -26,6 +26,7 @@ LANGUAGE = Language(
     prologue={"float": ()},
     boolean="int",
     array_result="output {type} {name}[{size}]",
+    triples=typed_triples({"float": "vector"}, "{vector}[{index}]"),
     local_variable="{type} {name} = {value};",
     table_opening="{type} {name}[{size}] = {{",
 )

@@ -1,7 +1,7 @@
 """WGSL, the shading language of WebGPU."""
 
 from programs.languages.c_family import SHADING
-from programs.languages.spelling import Language, Spelling, spell, words
+from programs.languages.spelling import Language, Spelling, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     SHADING
@@ -40,6 +40,7 @@ LANGUAGE = Language(
     ),
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     vectors={"half": "vec4<f16>", "float": "vec4<f32>"},
+    triples=typed_triples({"half": "vec3<f16>", "float": "vec3<f32>"}),
     record_number="{name}: {type},",
     record_array="{name}: array<{type}, {size}>,",
     record_closing="}}",
