@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from coefficients.agreement import fitted_form
+from coefficients.ambient import ambient_problems
 from coefficients.expression import form_of, reference_of, require_same
 from coefficients.packaged import (
     AS_PRINTED,
@@ -275,9 +276,18 @@ def _closed_form(name: str) -> Entry:
     return Entry(name, "exact", known[name])
 
 
+def exported_functions() -> dict[str, Problem]:
+    """Return what is exported but not fitted, by its whole name, such as 'ambient/cheap'.
+
+    The ambient functions use tables. The others are those of `quantities.functions`.
+    """
+    own = {f"ambient/{name}": each for name, each in ambient_problems().items()}
+    return {**functions(), **own}
+
+
 def _function(name: str) -> Entry:
     """Return the entry of a function that is declared as a quantity without forms."""
-    known = functions()
+    known = exported_functions()
     if name not in known:
         kind = name.partition("/")[0]
         allowed = ", ".join(each for each in known if each.startswith(f"{kind}/"))

@@ -101,9 +101,13 @@ def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
 
 
 def _returns_structure(owner: Problem) -> bool:
-    """Return whether the exact code of a quantity has functions that return structures."""
+    """Return whether the exact code of a quantity has functions that return structures of numbers.
+
+    Structures of vectors have only one layout.
+    """
     exact = owner.exact_code
-    return exact is not None and any(each.record is not None for each in exact.functions("float"))
+    records = [each.record for each in exact.functions("float")] if exact is not None else []
+    return any(record is not None and not record.vectors for record in records)
 
 
 def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function, ...]:

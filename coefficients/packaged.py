@@ -16,7 +16,7 @@ FOLDER = Path(__file__).parent / "tables"
 AS_PRINTED = "@printed"
 EXACT = "exact"
 # The first parts of the names of functions that are exported, but not fitted.
-FUNCTIONS = ("sampler", "decode", "detail", "curvature")
+FUNCTIONS = ("sampler", "decode", "detail", "curvature", "ambient")
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
