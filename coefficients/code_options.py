@@ -120,7 +120,7 @@ def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function
 def joined(called: Sequence[tuple[Function, ...]], name: str) -> Function:
     """Return one function that returns the values of several functions of the same arguments.
 
-    `called` has the functions of each table. Raises ValueError for a single table, for one of two
+    `called` has the functions of each table, of one value each. Raises ValueError for a single table, for one of two
     functions, and for tables whose functions have other arguments.
     """
     if len(called) < 2:
@@ -128,6 +128,8 @@ def joined(called: Sequence[tuple[Function, ...]], name: str) -> Function:
     for first, *more in called:
         if more:
             raise ValueError(f"together {name!r}: {more[-1].name} is one of two functions")
+        if first.result is not None:
+            raise ValueError(f"together {name!r}: {first.name} has {first.result} values, not one")
         if first.parameters != called[0][0].parameters:
             raise ValueError(
                 f"together {name!r}: {first.name} has other arguments or domains than "

@@ -7,6 +7,9 @@ import pytest
 
 from coefficients.ambient import PARTS, ambient_function, ambient_problems, part_costs, tables
 from coefficients.ambient.problems import AXES
+from coefficients.catalogue import resolve
+from coefficients.code_options import CodeOptions
+from coefficients.exported_code import source_file
 from fitting.points.grids import sobol_points
 from programs import (
     CallSequence,
@@ -155,3 +158,11 @@ def test_cost_of_the_parts_is_that_of_the_whole():
 def test_other_models_are_refused():
     with pytest.raises(ValueError, match="no model is called 'x': allowed are talk, cheap"):
         ambient_function("x")
+
+
+def test_options_for_other_code_are_refused():
+    entries = [resolve(f"ambient/{name}") for name in ("talk", "cheap")]
+    with pytest.raises(ValueError, match="FuzzAmbientTalk has 6 values, not one"):
+        source_file(entries, "c", options=CodeOptions(together="Both"))
+    with pytest.raises(ValueError, match="layout 'vec4' is for structures"):
+        source_file(entries, "hlsl", options=CodeOptions(layout="vec4"))
