@@ -120,8 +120,8 @@ def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function
 def joined(called: Sequence[tuple[Function, ...]], name: str) -> Function:
     """Return one function that returns the values of several functions of the same arguments.
 
-    `called` has the functions of each table, of one value each. Raises ValueError for a single table, for one of two
-    functions, and for tables whose functions have other arguments.
+    `called` has the functions of each table, of one value each. Raises ValueError for a single
+    table, for one of two functions or of several values, and for other arguments.
     """
     if len(called) < 2:
         raise ValueError(f"together {name!r} is of one table; allowed: at least 2")
