@@ -32,7 +32,7 @@ SETTINGS = Settings(
     density=0.3, spread=0.1, tilt=float(np.radians(55)), fiber="#8fb4ff", base="#1b2a5c", size=228
 )
 # The axis of the lobe ((1 + ω·s)/2)², its linear RGB, and that of the uniform light.
-AXIS, KEY, REST = (0.93, 0.2, 0.31), (3.4, 3.0, 2.4), (0.12, 0.14, 0.18)
+AXIS, KEY, REST = (0.93, 0.2, 0.31), (5.8, 5.1, 4.1), (0.2, 0.24, 0.3)
 MODELS = {"talk": "talk's model", "recommended": "recommended model"}
 # Exact radiances are computed at these values of √(v·n) and azimuths of half a circle, and
 # interpolated by bicubic splines.
@@ -161,10 +161,10 @@ def _draw(cloth: Cloth) -> Figure:
     for axis, (name, image) in zip(axes, images.items(), strict=False):
         axis.imshow(to_srgb(image))
         axis.set_title(name)
-    for axis, (name, title) in zip(axes[len(images) :], MODELS.items(), strict=True):
+    for axis, name in zip(axes[len(images) :], MODELS, strict=True):
         off = cloth.differences(name)
         axis.imshow(off, cmap=ERRORS, vmin=-_LIMIT, vmax=_LIMIT)
-        axis.set_title(f"{title} − exact")
+        axis.set_title(f"{name} − exact")
         axis.set_xlabel(f"rms {np.sqrt(np.mean(off**2)):.1%} of the mean")
     for axis in axes:
         axis.set(xticks=[], yticks=[])
