@@ -10,6 +10,7 @@ from jax.extend.core import JaxprEqn
 from programs.operations import OPERATIONS
 from programs.program import Operand
 from programs.tracing.builder import Builder
+from programs.tracing.primitive_values import values_of
 
 # Primitives that call another jaxpr -> the parameter that holds that jaxpr
 CALLS = {
@@ -176,7 +177,7 @@ def _contract(builder: Builder, dimension_numbers: Any, left: Any, right: Any) -
 
 def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
     positions = _MOVES[equation.primitive.name] or range(len(operands))
-    # Number the elements and let the primitive move the numbers: they show where each element goes.
+    # Number the elements and move the numbers: they show where each element goes.
     pool: list[Operand] = []
     arguments = list(operands)
     for position in positions:
@@ -185,10 +186,8 @@ def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
         pool.extend(_as_operands(operand).reshape(-1))
     if any(argument.dtype == object for argument in arguments):
         raise ValueError("an index that depends on the inputs; allowed: constant indices")
-    results = equation.primitive.bind(*arguments, **equation.params)
-    results = results if equation.primitive.multiple_results else [results]
     gathered = []
-    for numbers in map(np.asarray, results):
+    for numbers in values_of(equation, arguments):
         if numbers.size and not (numbers.min() >= 0 and numbers.max() < len(pool)):
             raise ValueError("an index out of bounds; allowed: indices inside the array")
         flat = np.empty(numbers.size, dtype=object)

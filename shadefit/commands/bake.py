@@ -177,11 +177,12 @@ class _Source:
 def _source(name: str) -> _Source:
     from coefficients.catalogue import EXACT, resolve
     from coefficients.exported_code import operations_of
-    from quantities import problems
+    from quantities import problem
+    from quantities.registry import names
 
     quantity = name.removeprefix(f"{EXACT}/")
-    if quantity in problems():
-        return _Source(problems()[quantity])
+    if quantity in names():
+        return _Source(problem(quantity))
     entry = resolve(name)
     return _Source(
         entry.problem, entry.require_fitted(), operations_of(entry), entry.kind == "file"

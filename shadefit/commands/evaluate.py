@@ -198,12 +198,12 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
 
 
 def _owner(name: str) -> "Problem":
-    from quantities import problems
+    from quantities import problem
+    from quantities.registry import names
 
-    known = problems()
-    if name not in known:
-        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(known)}")
-    return known[name]
+    if name not in names():
+        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(names())}")
+    return problem(name)
 
 
 def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:

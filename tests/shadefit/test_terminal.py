@@ -79,7 +79,9 @@ def test_in_a_pipe_there_are_no_codes_and_columns_stand_side_by_side():
         command, capture_output=True, text=True, env=environment, check=True
     ).stdout
     assert "\x1b" not in text
-    assert re.search(r"^best/q-9 +q +pole-q +1\.134e-05 +≤ 1\.628e-05$", text, re.MULTILINE)
+    assert re.search(
+        r"^best/q-9 +1\.134e-05 +≤ 1\.628e-05\n +of q  form pole-q ", text, re.MULTILINE
+    )
 
 
 def test_lines_of_a_note_are_kept_and_an_empty_cell_below_left_out(capsys):
