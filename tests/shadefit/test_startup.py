@@ -19,9 +19,11 @@ finally:
 OTHERS = """
 import sys
 from shadefit.cli import main
-main(["cost", "q"])
 slow = ("scipy", "optimistix", "lineax", "matplotlib", "quantities.skin", "quantities.fuzz.velvet")
-print([name for name in slow if name in sys.modules], file=sys.stderr)
+try:
+    main(["cost", "q"])
+finally:
+    print([name for name in slow if name in sys.modules], file=sys.stderr)
 """
 
 
