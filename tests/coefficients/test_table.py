@@ -419,7 +419,7 @@ def test_a_file_that_cannot_be_read_is_refused_with_its_name(tmp_path, monkeypat
     )
     binary.write_bytes(bytes(range(256)) * 4)
     large.write_bytes(b" " * (MAX_BYTES + 1))
-    for path, why in ((binary, "UTF-8"), (large, "larger"), (missing, "no such"), (tmp_path, "no")):
+    for path, why in ((binary, "UTF-8"), (large, "bytes"), (missing, "No such"), (tmp_path, "no")):
         with pytest.raises(ValueError, match=why) as error:
             read(path)
         assert str(path) in one_line(error)
@@ -433,7 +433,7 @@ def test_a_file_that_cannot_be_read_is_refused_with_its_name(tmp_path, monkeypat
     def denied(*_, **__):
         raise PermissionError(errno.EACCES, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_text", denied)
+    monkeypatch.setattr(os, "open", denied)
     with pytest.raises(ValueError, match="Permission denied") as error:
         read(locked)
     one_line(error)
@@ -442,7 +442,7 @@ def test_a_file_that_cannot_be_read_is_refused_with_its_name(tmp_path, monkeypat
 def test_a_fifo_is_no_table(tmp_path):
     """Nor does opening one wait for a writer."""
     os.mkfifo(tmp_path / "fifo.json")
-    with pytest.raises(ValueError, match="no such file"):
+    with pytest.raises(ValueError, match="no regular file"):
         read(tmp_path / "fifo.json")
 
 
