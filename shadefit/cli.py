@@ -108,6 +108,7 @@ _add(
     "curvature",
     curvature,
     "Examples: shadefit curvature head.obj --unit cm -o head.ply; "
+    "shadefit curvature head.obj --unit cm --picture head.png --view 30,10; "
     "shadefit curvature hand.glb --unit m --widths none --json",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")

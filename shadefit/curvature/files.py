@@ -62,19 +62,25 @@ def read_mesh(path: Path, unit: str) -> Mesh:
         raise ValueError(f"{path}: {error}") from None
 
 
-def ply_bytes(shape: Mesh, found: Curvature, largest: float = RANGE) -> bytes:
+def ply_bytes(
+    shape: Mesh, found: Curvature, largest: float = RANGE, drift: np.ndarray | None = None
+) -> bytes:
     """Return a binary PLY file in mm of a mesh with its curvature.
 
     A vertex has x y z, nx ny nz, the tangent tx ty tz, the tensor ii_tt ii_tb ii_bb in 1/mm, and
     the signed bytes packed_tt packed_tb packed_bb packed_mean of the range ±`largest`. The
-    bitangent is n × t.
+    bitangent is n × t. With a `drift` (n, 2) of the normal, drift_t drift_b in 1/mm² follow the
+    tensor.
     """
     names = ["x", "y", "z", "nx", "ny", "nz", "tx", "ty", "tz", "ii_tt", "ii_tb", "ii_bb"]
+    columns = [shape.vertices, shape.normals, found.frames[:, 0], found.tensors]
+    if drift is not None:
+        names += ["drift_t", "drift_b"]
+        columns.append(drift)
     packed = ["packed_tt", "packed_tb", "packed_bb", "packed_mean"]
     fields = [*((name, "<f4") for name in names), *((name, "i1") for name in packed)]
     vertices = np.empty(len(shape.vertices), fields)
-    columns = np.hstack([shape.vertices, shape.normals, found.frames[:, 0], found.tensors])
-    for name, column in zip(names, columns.T, strict=True):
+    for name, column in zip(names, np.hstack(columns).T, strict=True):
         vertices[name] = column
     for name, column in zip(packed, to_bytes(found.tensors, largest).T, strict=True):
         vertices[name] = column
