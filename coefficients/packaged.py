@@ -15,8 +15,10 @@ FOLDER = Path(__file__).parent / "tables"
 # Behind the name of a published table: the table as it is printed, without corrections.
 AS_PRINTED = "@printed"
 EXACT = "exact"
+# The first part of the names of ambient functions, which use tables
+AMBIENT = "ambient"
 # The first parts of the names of functions that are exported, but not fitted.
-FUNCTIONS = ("sampler", "decode", "detail", "curvature", "ambient")
+FUNCTIONS = ("sampler", "decode", "detail", "curvature", AMBIENT)
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
@@ -84,8 +86,14 @@ def kind_of(name: str) -> Kind:
 
 
 def packaged_table(name: str) -> Table:
-    """Return a packaged table with a name of `names`; errata are applied except to '@printed'."""
+    """Return a packaged table; errata are applied except to '@printed'.
+
+    The name is one of which `is_packaged` is true. Raises ValueError for '@printed' if the table is
+    not a published one.
+    """
     stem = name.removesuffix(AS_PRINTED)
+    if stem != name and kind_of(stem) != "published":
+        raise ValueError(f"{stem} is not published: allowed is {stem} without {AS_PRINTED}")
     return stored(stem) if stem != name else corrected(stored(stem))
 
 

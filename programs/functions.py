@@ -38,9 +38,9 @@ class Record:
     vectors: tuple[str, ...] = ()
 
     def __post_init__(self):
-        _require_identifier("record", self.name)
+        require_identifier("record", self.name)
         for member in (self.member, *self.vectors):
-            _require_identifier("member", member)
+            require_identifier("member", member)
 
     def place(self, index: int, component: str = COMPONENT) -> str:
         """Return the member that holds result number `index`.
@@ -76,7 +76,7 @@ class Parameter:
     shape: Shape = "array"
 
     def __post_init__(self):
-        _require_identifier("parameter", self.name)
+        require_identifier("parameter", self.name)
         low, high = self.domain
         if not (isfinite(low) and isfinite(high) and low <= high):
             raise ValueError(
@@ -125,8 +125,8 @@ class Function:
     record: Record | None = None
 
     def __post_init__(self):
-        _require_identifier("function", self.name)
-        _require_identifier("result", self.result_name)
+        require_identifier("function", self.name)
+        require_identifier("result", self.result_name)
         _require_count(f"result of {self.name}", self.result)
         names = [parameter.name for parameter in self.parameters]
         if self.result is not None:
@@ -190,7 +190,8 @@ def group_inputs(function: Function, values: Sequence[Any]) -> tuple[Any, ...]:
     return tuple(arguments)
 
 
-def _require_identifier(kind: str, name: str) -> None:
+def require_identifier(kind: str, name: str) -> None:
+    """Raise ValueError, which says what `kind` of name it is, for a name that is no identifier."""
     if not (isinstance(name, str) and name.isascii() and name.isidentifier()):
         raise ValueError(
             f"{kind} name {name!r} is no identifier; allowed: letters, digits and '_', "
