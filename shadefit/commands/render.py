@@ -118,7 +118,7 @@ def _number(value: float | int) -> float:
     try:
         return float(value)
     except OverflowError:
-        return math.copysign(math.inf, value)
+        return math.inf if value > 0 else -math.inf
 
 
 def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) -> None:
