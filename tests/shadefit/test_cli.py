@@ -191,6 +191,26 @@ def test_a_checkout_is_known_by_its_project_file(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("root", "project", "ours"),
+    [
+        ("checkout", '[project]\nname = "shadefit"\n', True),
+        # Other packages have such files too, and install them by mistake.
+        ("vendored", '[project]\nname = "other"\n', False),
+        ("vendored", "[tool.black]\n", False),
+        ("vendored", "project = 1\n", False),
+        ("vendored", "no project file", False),
+        ("site-packages", '[project]\nname = "shadefit"\n', False),
+        ("dist-packages", '[project]\nname = "shadefit"\n', False),
+    ],
+)
+def test_only_the_project_file_of_a_checkout_counts(monkeypatch, tmp_path, root, project, ours):
+    monkeypatch.setattr(packaged, "FOLDER", tmp_path / root / "coefficients" / "tables")
+    (tmp_path / root).mkdir()
+    (tmp_path / root / "pyproject.toml").write_text(project)
+    assert packaged.in_checkout() is ours
+
+
+@pytest.mark.parametrize(
     "command",
     [ambient, figures, refit.refit, render, report, search],
     ids=lambda each: each.__name__,
