@@ -200,8 +200,8 @@ def quick_fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scal
     sin_half, cos_half = sine_and_cosine(phi / 2)
     sines = sin_u * sin_f
     # As `sin2_between` has it: full relative precision where the light is along the fibre.
-    less = sine_and_cosine((theta_u - theta_f) / 2)[0] ** 2 + sines * sin_half**2
-    more = sine_and_cosine((theta_u + theta_f) / 2)[1] ** 2 + sines * cos_half**2
+    less = sine_and_cosine((jnp.asarray(theta_u) - theta_f) / 2)[0] ** 2 + sines * sin_half**2
+    more = sine_and_cosine((jnp.asarray(theta_u) + theta_f) / 2)[1] ** 2 + sines * cos_half**2
     return scattered_fraction(
         cos_u,
         sines * ((cos_half - sin_half) * (cos_half + sin_half)) + cos_u * cos_f,
