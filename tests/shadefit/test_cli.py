@@ -3,7 +3,6 @@
 import inspect
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
@@ -94,19 +93,6 @@ def test_evaluate_gives_every_leg_within_its_error(capsys, name):
         assert abs(table["difference"]) < (0.42 if name.startswith("sggx") else 0.15)
     best = [each.name for each in entries(problems()[name]) if each.kind == "best"]
     assert [table["label"] for table in result["tables"] if table["kind"] == "best"] == best
-
-
-def test_float64_is_set_whatever_the_environment_says():
-    code = (
-        "import os, sys; from shadefit.cli import main\n"
-        "try: main(['--version'])\n"
-        "finally: import jax; sys.stderr.write(str(jax.config.read('jax_enable_x64')))"
-    )
-    environment = {**os.environ, "JAX_ENABLE_X64": "0"}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True
-    )
-    assert done.stderr == "True"
 
 
 def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
