@@ -16,6 +16,7 @@ from fitting.goal import Goal
 from fitting.points.grids import Grid, trapezoid_grid
 from fitting.solvers.on_grid import OnGrid
 from integrals import VELVET
+from integrals.compilation import jit_for_few_calls
 from integrals.fuzz.velvet import normalisation, series_coefficients
 from integrals.reference import restricted
 from programs.bounding.denominators import DenominatorBound, bound_below
@@ -35,7 +36,7 @@ _SERIES_TERMS = 24
 
 AXES = restricted(VELVET.axes, asymmetry=(-0.95, 0.0))
 
-_norms = jax.jit(jax.vmap(normalisation))
+_norms = jit_for_few_calls(jax.vmap(normalisation))
 
 
 def _value(c, asymmetry: Scalar) -> Array:

@@ -57,7 +57,12 @@ def bake(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="File to write; by default SOURCE.EXTENSION.")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            help="File to write, or - for standard output; by default SOURCE.EXTENSION.",
+        ),
     ] = None,
     json: Json = False,
 ) -> None:
@@ -77,7 +82,7 @@ def bake(
     from shadefit.commands.table_records import errors_record
     from shadefit.outputs import BakedAxis, BakeOutput, BakeSource, BesideTable
     from shadefit.progress import stages
-    from shadefit.terminal import print_json
+    from shadefit.terminal import apart_from, print_json
 
     counts = _size(size)
     made = _source(source)
@@ -144,10 +149,11 @@ def bake(
             for each in others
         ],
     )
-    if json:
-        print_json(report)
-    else:
-        print_bake(report)
+    with apart_from(path):
+        if json:
+            print_json(report)
+        else:
+            print_bake(report)
 
 
 @dataclass(frozen=True)

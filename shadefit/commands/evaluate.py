@@ -154,13 +154,15 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     """Evaluate the quantity `name` at the points of a file; write the columns, or print them."""
     import numpy as np
 
-    from coefficients.files import require_writable_file, write_whole_bytes
+    from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
     from fitting import form_values
     from integrals.many_points import estimates_at_many
     from shadefit.outputs import PointsOutput
     from shadefit.terminal import print_json
 
     owner = _owner(name)
+    if out == OUTPUT:
+        out = None
     if out is not None:
         require_format(out)
         require_writable_file(out)

@@ -95,6 +95,8 @@ def export(
     that was measured.
     """
     require_tables(tables)
+    if output == Path("-"):
+        output = None
     if bundle is not None:
         from coefficients.bundles import bundle as find_bundle
         from coefficients.bundles import language_of_bundle
