@@ -10,7 +10,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from scipy.optimize import linprog
 
 from fitting.form import FittedForm, Form, Proofs, Stage
 from fitting.goal import Goal
@@ -53,6 +52,8 @@ def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
     A linear program does so at the nodes of a grid of k. Then c₀ is raised until r̃ is below r
     between the nodes too.
     """
+    from scipy.optimize import linprog  # noqa: PLC0415  slow to import
+
     k = grid.points[:, 0]
     keep = k < 0
     x, r = -k[keep], np.asarray(exact)[keep]

@@ -16,6 +16,7 @@ from shadefit.figures.microfacet_sampling import sampling_pictures
 from shadefit.figures.ndf import ndf_pictures
 from shadefit.figures.picture import Picture
 from shadefit.figures.result import draw_data
+from shadefit.figures.skin_surfaces import skin_pictures
 
 _DRAW = {1: draw_curves, 2: draw_errors}
 
@@ -57,6 +58,7 @@ def pictures() -> dict[str, Picture]:
         **encoding_pictures(),
         **detail_pictures(),
         **maps_pictures(),
+        **skin_pictures(),
     }
     return {**topics, **others, "frontier": _FRONTIER, "ggx-frontier": _GGX_FRONTIER}
 
