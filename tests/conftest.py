@@ -1,5 +1,6 @@
 """Float64 for every test, as the entry points set it; the same drawn examples in every run."""
 
+import os
 import re
 
 import jax
@@ -7,6 +8,8 @@ import pytest
 from hypothesis import settings
 
 jax.config.update("jax_enable_x64", True)
+# Commands that tests start leave the user's cache of compiled programs alone.
+os.environ["SHADEFIT_CACHE"] = "off"
 
 SLOW_NAMES = re.compile(
     r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))|sggx-filter|ggx-(scale|bias)"
