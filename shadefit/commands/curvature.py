@@ -73,12 +73,12 @@ def curvature(
     The PLY file has the tensor in 1/mm, its tangent, and the tensor packed into four bytes. Without
     -o and --picture only the summary is printed.
     """
-    from coefficients.files import require_writable_file, write_whole_bytes
+    from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
     from shadefit.curvature import curvature as curvature_of
     from shadefit.curvature.files import ply_bytes, read_mesh
     from shadefit.curvature.smoothing import convex, normal_drift, smoothed
     from shadefit.curvature.vertex_bytes import require_range
-    from shadefit.terminal import print_json
+    from shadefit.terminal import apart_from, print_json
 
     if unit is None:
         raise ValueError("the unit of the mesh is not known: give --unit mm, cm, m or in")
@@ -88,7 +88,7 @@ def curvature(
         raise ValueError(f"--drift {drift:g}: allowed are 0.001 to 1000, in mm")
     seen = _view(view, light, size)
     if out is not None:
-        if out.suffix.lower() != ".ply":
+        if out != OUTPUT and out.suffix.lower() != ".ply":
             raise ValueError(f"{out}: allowed is a file that ends with .ply")
         require_writable_file(out)
     if picture is not None:
@@ -109,10 +109,11 @@ def curvature(
     for path, content in files.items():
         write_whole_bytes(path, content)
     record = _record(mesh, unit, chosen, keep_concave, largest, shape, found, drift, list(files))
-    if json:
-        print_json(record)
-    else:
-        _print(record)
+    with apart_from(out):
+        if json:
+            print_json(record)
+        else:
+            _print(record)
 
 
 def _widths(text: str) -> list[float]:

@@ -1,10 +1,12 @@
 """Mesh files: OBJ, PLY and glTF are read through trimesh, and PLY with curvature is written."""
 
+import io
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from coefficients.input_files import read_bounded
 from shadefit.curvature.meshes import UNITS, Mesh, mesh
 from shadefit.curvature.tensors import Curvature
 from shadefit.curvature.vertex_bytes import to_bytes
@@ -25,10 +27,7 @@ def read_mesh(path: Path, unit: str) -> Mesh:
         raise ValueError(f"unit {unit!r} is not known: allowed are {', '.join(UNITS)}")
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: allowed are files that end with {', '.join(SUFFIXES)}")
-    if not path.is_file():
-        raise ValueError(f"{path} is no file")
-    if path.stat().st_size > LARGEST_FILE:
-        raise ValueError(f"{path} has {path.stat().st_size} bytes: allowed are {LARGEST_FILE}")
+    data = io.BytesIO(read_bounded(path, LARGEST_FILE))
     try:
         import trimesh  # noqa: PLC0415
     except ImportError:
@@ -36,15 +35,14 @@ def read_mesh(path: Path, unit: str) -> Mesh:
             "meshes are read by trimesh, which is not installed: pip install 'shadefit[meshes]'"
         ) from None
     try:
-        with path.open("rb") as file:
-            scene = trimesh.load_scene(
-                file,
-                file_type=path.suffix.lower()[1:],
-                resolver=_beside(path.parent),
-                process=False,
-                skip_materials=True,
-            )
-            parts = list(_parts(scene))
+        scene = trimesh.load_scene(
+            data,
+            file_type=path.suffix.lower()[1:],
+            resolver=_beside(path.parent),
+            process=False,
+            skip_materials=True,
+        )
+        parts = list(_parts(scene))
     # A damaged file makes trimesh raise errors of any type.
     except Exception as error:
         text = " ".join(str(error).split()) or type(error).__name__
@@ -134,11 +132,9 @@ def _beside(folder: Path):
         def get(self, key: str) -> bytes:
             name = key
             found = folder / name
-            if Path(name).name != name or not found.is_file() or found.is_symlink():
+            if Path(name).name != name or found.is_symlink():
                 raise ValueError(f"it refers to {name!r}: allowed are files beside it")
-            if found.stat().st_size > LARGEST_FILE:
-                raise ValueError(f"{name!r} is larger than {LARGEST_FILE} bytes")
-            return found.read_bytes()
+            return read_bounded(found, LARGEST_FILE)
 
         def keys(self) -> list[str]:
             return []

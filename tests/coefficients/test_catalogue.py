@@ -154,7 +154,7 @@ def test_a_file_in_a_folder_called_exact_is_a_file(tmp_path, monkeypatch):
     (tmp_path / "exact").mkdir()
     (tmp_path / "exact" / "mine.json").write_text(serialise(table_of("q")))
     assert resolve("exact/mine.json").kind == "file"
-    with pytest.raises(ValueError, match=r"exact/none\.json: no such file"):
+    with pytest.raises(ValueError, match=r"exact/none\.json cannot be read: No such file"):
         resolve("exact/none.json")
 
 

@@ -123,7 +123,7 @@ def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
     [
         ("a.ply", None, [], "the unit of the mesh is not known"),
         ("a.ply", None, ["--unit", "mile"], "unit 'mile' is not known"),
-        ("a.ply", None, ["--unit", "mm"], "is no file"),
+        ("a.ply", None, ["--unit", "mm"], "No such file"),
         ("a.stl", "x", ["--unit", "mm"], "allowed are files that end with"),
         ("a.ply", "garbage", ["--unit", "mm"], "cannot be read as a mesh"),
         ("a.glb", "garbage", ["--unit", "mm"], "cannot be read as a mesh"),
