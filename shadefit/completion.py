@@ -34,7 +34,14 @@ _BLENDS = ("overlay", "smooth-overlay", "symmetric-overlay")
 _OPERATORS = tuple(f"detail/{name}{end}" for name in _BLENDS for end in ("", "-inverse"))
 _CURVATURES = tuple(
     f"curvature/{name}"
-    for name in ("from-light", "effective", "equivalent-cylinder", "pack", "unpack")
+    for name in (
+        "from-light",
+        "along-light",
+        "effective",
+        "equivalent-cylinder",
+        "pack",
+        "unpack",
+    )
 )
 # Functions that are exported, but not fitted.
 FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES)
