@@ -18,15 +18,16 @@ from quantities.microfacet import (
     SAMPLERS,
 )
 from quantities.problem import Problem
-from quantities.skin import SKIN_QUANTITIES
+from quantities.skin import BAND_QUANTITIES, LOBE_QUANTITIES, SKIN_QUANTITIES
 
 GROUP = "shadefit.problems"
 
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
 _MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
+_SKIN = (*SKIN_QUANTITIES, *LOBE_QUANTITIES, *BAND_QUANTITIES)
 _PROBLEMS: dict[str, Problem] = {
-    each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS, *SKIN_QUANTITIES)
+    each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS, *_SKIN)
 }
 # What is exported, but not fitted, by the first part of its name: samplers and their densities,
 # decoders of textures, operators of detail maps, and curvature from light.
