@@ -10,6 +10,7 @@ from quantities.calling_convention import Argument, CallingConvention
 from quantities.family import Family
 from quantities.plot_hints import AxisHint, PlotHints
 from quantities.problem import Problem
+from quantities.skin.hill import hill_form
 from quantities.skin.hyperbola_forms import (
     MOST_BELOW,
     MOST_WIDTH,
@@ -29,12 +30,14 @@ _WEIGHTS = {
 def _problem(reference: Reference) -> Problem:
     surface = reference.name.rpartition("-")[2]
 
+    others = (hill_form(reference),) if surface == "sphere" else ()
+
     def made(**shape):
         return hyperbola_form(reference, **shape)
 
     return Problem(
         reference=reference,
-        forms=(without_denominator(reference),),
+        forms=(without_denominator(reference), *others),
         families={
             "lobe-skin": Family(
                 made,

@@ -23,10 +23,23 @@ from quantities import problem, problems
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias")
 _SORTED = ("blue", "green", "red")
-_SKIN = tuple(f"skin-cylinder-{channel}" for channel in ("red", "green", "blue"))
-PUBLISHED = ("ps", "g", "q", "r", *_GGX, "sggx-filter", "sggx-filter-axes", *_SKIN)
+_SKIN = tuple(f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in _SORTED)
+PUBLISHED = (
+    "ps",
+    "g",
+    "q",
+    "r",
+    *_GGX,
+    "sggx-filter",
+    "sggx-filter-axes",
+    *_SKIN,
+    "skin-lobe-sphere",
+)
 # Constants of two sources are in print for these.
-SECOND = ("sggx-filter-lean", "sggx-filter-axes-lean")
+SECOND = (
+    *("sggx-filter-lean", "sggx-filter-axes-lean"),
+    *(f"skin-cylinder-{channel}-yeung" for channel in _SORTED),
+)
 CLOSED_FORMS = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 
 
