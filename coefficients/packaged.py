@@ -84,8 +84,14 @@ def kind_of(name: str) -> Kind:
 
 
 def packaged_table(name: str) -> Table:
-    """Return a packaged table with a name of `names`; errata are applied except to '@printed'."""
+    """Return a packaged table; errata are applied except to '@printed'.
+
+    The name is one of which `is_packaged` is true. Raises ValueError for '@printed' if the table is
+    not a published one.
+    """
     stem = name.removesuffix(AS_PRINTED)
+    if stem != name and kind_of(stem) != "published":
+        raise ValueError(f"{stem} is not published: allowed is {stem} without {AS_PRINTED}")
     return stored(stem) if stem != name else corrected(stored(stem))
 
 

@@ -23,8 +23,8 @@ class Record:
     member: str = "m"
 
     def __post_init__(self):
-        _require_identifier("record", self.name)
-        _require_identifier("member", self.member)
+        require_identifier("record", self.name)
+        require_identifier("member", self.member)
 
     def place(self, index: int) -> str:
         """Return the member that holds result number `index`."""
@@ -53,7 +53,7 @@ class Parameter:
     record: Record | None = None
 
     def __post_init__(self):
-        _require_identifier("parameter", self.name)
+        require_identifier("parameter", self.name)
         low, high = self.domain
         if not (isfinite(low) and isfinite(high) and low <= high):
             raise ValueError(
@@ -84,8 +84,8 @@ class Function:
     record: Record | None = None
 
     def __post_init__(self):
-        _require_identifier("function", self.name)
-        _require_identifier("result", self.result_name)
+        require_identifier("function", self.name)
+        require_identifier("result", self.result_name)
         _require_count(f"result of {self.name}", self.result)
         names = [parameter.name for parameter in self.parameters]
         if self.result is not None:
@@ -149,7 +149,8 @@ def group_inputs(function: Function, values: Sequence[Any]) -> tuple[Any, ...]:
     return tuple(arguments)
 
 
-def _require_identifier(kind: str, name: str) -> None:
+def require_identifier(kind: str, name: str) -> None:
+    """Raise ValueError, which says what `kind` of name it is, for a name that is no identifier."""
     if not (isinstance(name, str) and name.isascii() and name.isidentifier()):
         raise ValueError(
             f"{kind} name {name!r} is no identifier; allowed: letters, digits and '_', "

@@ -33,7 +33,10 @@ _ENCODINGS = ("published", "stereographic", "quarter-root", "logarithmic")
 _DECODERS = tuple(f"decode/aniso-{name}{end}" for name in _ENCODINGS for end in ("", "-matrix"))
 _BLENDS = ("overlay", "smooth-overlay", "symmetric-overlay")
 _OPERATORS = tuple(f"detail/{name}{end}" for name in _BLENDS for end in ("", "-inverse"))
-_CURVATURES = tuple(f"curvature/{name}" for name in ("from-light", "effective", "pack", "unpack"))
+_CURVATURES = tuple(
+    f"curvature/{name}"
+    for name in ("from-light", "effective", "equivalent-cylinder", "pack", "unpack")
+)
 # Functions that are exported, but not fitted.
 FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES)
 

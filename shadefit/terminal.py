@@ -3,11 +3,15 @@
 import json
 import shutil
 import sys
+from collections.abc import Generator
+from contextlib import contextmanager, nullcontext, redirect_stdout
+from pathlib import Path
 
 from pydantic import BaseModel
 from rich.console import Console
 from rich.text import Text
 
+from coefficients.files import OUTPUT
 from shadefit.encoding import shown, shown_json
 from shadefit.layout import RULE, laid_out, wrapped
 
@@ -15,6 +19,13 @@ from shadefit.layout import RULE, laid_out, wrapped
 _UNLIMITED = 10_000
 # In a terminal notes are not wider than this, because long lines are hard to read.
 _WIDEST_NOTE = 100
+
+
+@contextmanager
+def apart_from(*files: Path | None) -> Generator[None]:
+    """Print to standard error if one of the files that a command writes is standard output."""
+    with redirect_stdout(sys.stderr) if OUTPUT in files else nullcontext():
+        yield
 
 
 def print_json(output: BaseModel) -> None:

@@ -1,6 +1,8 @@
 """The Metal shading language."""
 
 from programs.languages.c_family import CPP_WORDS, SELECTION, SHADING
+from programs.languages.c_names import C_LIBRARY, C_MACROS
+from programs.languages.shading_names import METAL_LIBRARY, METAL_WORDS
 from programs.languages.spelling import Language, spell, words
 
 _FUNCTIONS = spell(
@@ -19,11 +21,14 @@ LANGUAGE = Language(
     literals={"half": "{}h", "float": "{}f"},
     functions={"half": _FUNCTIONS, "float": _FUNCTIONS},
     reserved=CPP_WORDS
+    | C_MACROS
+    | METAL_WORDS
     | words(
         "device constant thread threadgroup threadgroup_imageblock kernel vertex fragment metal",
         "half half2 half3 half4 float2 float3 float4 uint uchar ushort ulong sampler texture2d",
         "array vec access ray_data object_data",
     ),
+    library=C_LIBRARY | METAL_LIBRARY,
     clamps=dict.fromkeys(
         ("half", "float"), ("metal::clamp({0}, {1}, {2})", "metal::saturate({0})")
     ),

@@ -55,8 +55,11 @@ class Language:
     literals: Mapping[str, str]
     # precision -> operation -> spelling; the operators that all languages share need none
     functions: Mapping[str, Mapping[str, Spelling]]
-    # names that no function, argument or variable may have
+    # names that no function, argument or variable may have: words and macros
     reserved: frozenset[str]
+    # names that no function, structure or namespace may have: functions and types that the language
+    # or its library has, which an argument or a variable may hide
+    library: frozenset[str]
     # precision -> lines at the start of a file
     prologue: Mapping[str, tuple[str, ...]]
     # start of a comment

@@ -1,6 +1,7 @@
 """WGSL, the shading language of WebGPU."""
 
 from programs.languages.c_family import SHADING
+from programs.languages.shading_names import WGSL_LIBRARY
 from programs.languages.spelling import Language, Spelling, spell, words
 
 _FUNCTIONS = spell(
@@ -38,6 +39,7 @@ LANGUAGE = Language(
         "where with writeonly yield array atomic bool f16 f32 i32 u32 ptr vec2 vec3 vec4 mat2x2",
         "mat3x3 mat4x4 sampler _",
     ),
+    library=WGSL_LIBRARY,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     vectors={"half": "vec4<f16>", "float": "vec4<f32>"},
     record_number="{name}: {type},",

@@ -1,6 +1,5 @@
 """Printing functions as source code: any JAX function of scalars, in any of the languages."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -8,6 +7,7 @@ from programs.functions import Function, Parameter, input_names
 from programs.languages import Language
 from programs.languages import language as find_language
 from programs.operations import OPERATIONS
+from programs.printing.allowed_names import require_namespace, taken_names
 from programs.printing.comments import function_comment, header_comment
 from programs.printing.expression import (
     ConstantPool,
@@ -86,10 +86,8 @@ def write_sections(
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"function name {name!r} occurs twice; allowed: once")
-    if namespace is not None and not spelled.namespaces:
-        raise ValueError(
-            f"namespace {namespace!r} is not possible in {spelled.name}; allowed: none"
-        )
+    if namespace is not None:
+        require_namespace(spelled, namespace)
     blocks = [header_comment(spelled, sections[0].header)] if sections[0].header else []
     guarded = guard is not None and spelled.preprocessor
     blocks += [[f"#ifndef {guard}", f"#define {guard}"]] if guarded else []
@@ -103,7 +101,7 @@ def write_sections(
         blocks += [record for record in own if record in records]
         records = [record for record in records if record not in own]
         for function in section.functions:
-            taken = _taken_names(spelled, precision, function, names)
+            taken = taken_names(spelled, precision, function, names, ending)
             blocks.append(_function(function, spelled, precision, constants, taken))
     blocks += ending
     blocks += [[f"}} {spelled.comment} namespace {namespace}"]] if namespace is not None else []
@@ -250,36 +248,3 @@ def _pool_declaration(context: WritingContext, pool: ConstantPool) -> list[str]:
     opening = language.table_opening.format(**parts, size=len(pool.places))
     rows = break_lines(tokens, INDENT * 2, INDENT * 2)
     return [INDENT + opening, *rows, INDENT + language.table_closing.format()]
-
-
-def _taken_names(
-    language: Language, precision: str, function: Function, functions: Sequence[str]
-) -> set[str]:
-    """Collect the names that local variables cannot have.
-
-    Raises ValueError for a name of the function, its parameters or its result that the language
-    does not allow.
-    """
-    called = {
-        word
-        for template in [
-            *(how.template for how in language.functions[precision].values()),
-            *language.clamps.get(precision, ()),
-        ]
-        for word in re.findall(r"[A-Za-z_]\w*", template)
-    }
-    own = [parameter.name for parameter in function.parameters]
-    types = [each.record.name for each in (function, *function.parameters) if each.record]
-    if function.result is not None:
-        own.append(function.result_name)
-    for name in [function.name, *own, *types]:
-        unfit = name in language.reserved or name in called
-        if unfit or "__" in name or name.startswith(("_", "gl_")):
-            raise ValueError(
-                f"name {name!r} cannot be used in {language.name}; allowed: identifiers that are "
-                "no reserved word or function, without '_' in front, '__' or 'gl_'"
-            )
-    for name in [*own, *types]:
-        if name in functions:
-            raise ValueError(f"name {name!r} is a function and a parameter; allowed: one of them")
-    return {*language.reserved, *called, *own, *types, *functions}

@@ -16,7 +16,8 @@ from shadefit.figures.microfacet_sampling import sampling_pictures
 from shadefit.figures.ndf import ndf_pictures
 from shadefit.figures.picture import Picture
 from shadefit.figures.result import draw_data
-from shadefit.figures.skin_pictures import skin_pictures
+from shadefit.figures.skin_surfaces import skin_pictures
+from shadefit.figures.skin_tables import skin_table_pictures
 
 _DRAW = {1: draw_curves, 2: draw_errors}
 
@@ -59,6 +60,7 @@ def pictures() -> dict[str, Picture]:
         **detail_pictures(),
         **maps_pictures(),
         **skin_pictures(),
+        **skin_table_pictures(),
     }
     return {**topics, **others, "frontier": _FRONTIER, "ggx-frontier": _GGX_FRONTIER}
 

@@ -1,4 +1,4 @@
-"""The picture of the lookup tables of skin: exact on a ring and a sphere, the fit, and its error."""
+"""The picture of the lookup tables of skin: exact on a ring and on a sphere, and the fits."""
 
 import functools
 
@@ -21,16 +21,17 @@ _CHANNELS = ("red", "green", "blue")
 _FULL = 0.001
 
 
-def skin_pictures() -> dict[str, Picture]:
+def skin_table_pictures() -> dict[str, Picture]:
     """Return the picture of the lookup tables of skin, by name."""
     return {
         "skin-tables": Picture(
             "Lookup tables of skin",
-            "The light that skin scatters, over n·l and the curvature, for the profile of d'Eon and "
-            "Luebke: exact on a ring with the linear profile, which is a cylinder, on a ring with "
-            "the radial profile, which is a mistake there and scatters too little red light, and on "
-            "a sphere. Below: the tables best/skin-cylinder-*-63, what the radial profile changes on a "
-            "ring, and the error of the tables, 100 times as bright. Grey is no difference.",
+            "The light that skin scatters, over n·l and the curvature, for the profile of d'Eon "
+            "and Luebke: exact on a ring with the linear profile, which is a cylinder, on a ring "
+            "with the radial profile, which is a mistake there and scatters too little red light, "
+            "and on a sphere. Below: the tables best/skin-cylinder-*-63, what the radial profile "
+            "changes on a ring, and the error of the tables, 100 times as bright. Grey is no "
+            "difference.",
             draw_tables,
         )
     }
