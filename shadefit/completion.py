@@ -10,10 +10,11 @@ from pathlib import Path
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
 _MAPS = ("sggx-filter", "sggx-filter-axes")
-_SKIN = tuple(
-    f"skin-{surface}-{channel}"
-    for surface in ("cylinder", "sphere")
-    for channel in ("red", "green", "blue")
+_CHANNELS = ("red", "green", "blue")
+_SKIN = (
+    *(f"skin-{surface}-{channel}" for surface in ("cylinder", "sphere") for channel in _CHANNELS),
+    *("skin-lobe-cylinder", "skin-lobe-sphere"),
+    *(f"skin-band-{band}-{channel}" for band in (1, 2) for channel in _CHANNELS),
 )
 # The quantities in the order of the registry, and the closed forms to export.
 QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS, *_SKIN)

@@ -47,6 +47,13 @@ POINTS = {
         for surface in ("cylinder", "sphere")
         for channel in ("red", "green", "blue")
     },
+    "skin-lobe-cylinder": ["--cosine", "0.2", "--width", "0.3"],
+    "skin-lobe-sphere": ["--cosine", "0.2", "--width", "0.3"],
+    **{
+        f"skin-band-{band}-{channel}": ["--curvature", "0.1"]
+        for band in (1, 2)
+        for channel in ("red", "green", "blue")
+    },
 }
 
 
