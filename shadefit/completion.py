@@ -44,8 +44,9 @@ _CURVATURES = tuple(
         "unpack",
     )
 )
+_AMBIENT = tuple(f"ambient/{name}" for name in ("talk", "cheap", "recommended"))
 # Functions that are exported, but not fitted.
-FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES)
+FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES, *_AMBIENT)
 
 
 def complete_quantity(incomplete: str) -> list[str]:
