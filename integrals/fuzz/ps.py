@@ -72,6 +72,7 @@ def quick_fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scal
     Its sines and cosines are polynomials, which the compiler vectorises. So it rounds differently:
     its error is at most 4ε/α too, but tables were not fitted to its values.
     """
+    theta_f, theta_u, phi = map(jnp.asarray, (theta_f, theta_u, phi))
     sin_f, cos_f = sine_and_cosine(theta_f)
     sin_u, cos_u = sine_and_cosine(theta_u)
     sin_half, cos_half = sine_and_cosine(phi / 2)
