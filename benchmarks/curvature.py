@@ -21,11 +21,22 @@ def main(count: int = 150, seed: int = 5) -> None:
     """Print the table, a column for each surface, and the errors of the reference."""
     seen = {name: lit(surface, count, seed) for name, surface in SURFACES.items()}
     found = {name: errors(each) for name, each in seen.items()}
-    print(f"{'red, rms (largest)':24s}", *(f"{name:>20s}" for name in SURFACES))
+    print(f"{'red, rms (largest)':40s}", *(f"{name:>20s}" for name in SURFACES))
     for method in METHODS:
         red = [found[name][method][:, 0] for name in SURFACES]
         cells = [f"{np.sqrt(np.mean(e**2)):.5f} ({np.abs(e).max():.4f})" for e in red]
-        print(f"{method:24s}", *(f"{cell:>20s}" for cell in cells))
+        print(f"{method:40s}", *(f"{cell:>20s}" for cell in cells))
+    print("rms of red, green, blue divided by that along the light:")
+    for method in METHODS:
+        ratios = [
+            np.sqrt(
+                np.mean(found[name][method] ** 2, axis=0)
+                / np.mean(found[name]["along the light"] ** 2, axis=0)
+            )
+            for name in SURFACES
+        ]
+        cells = [" ".join(f"{each:.3f}" for each in ratio) for ratio in ratios]
+        print(f"{method:40s}", *(f"{cell:>20s}" for cell in cells))
     sphere = seen["sphere 10"]
     wrong = np.abs(on_sphere(10.0, sphere) - sphere.values).max()
     print(f"brute force against the exact sphere: {wrong:.1e}")

@@ -4,6 +4,7 @@ A name stands for a packaged table (below `coefficients/tables`), for a table in
 for a closed form. The command line resolves it once, into an `Entry`, and passes the entry on.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 from coefficients.agreement import fitted_form
 from coefficients.expression import form_of, reference_of, require_same
 from coefficients.packaged import (
+    AMBIENT,
     AS_PRINTED,
     EXACT,
     FOLDER,
@@ -27,7 +29,6 @@ from coefficients.packaged import (
     packaged_table,
     unknown,
 )
-from coefficients.record import published_table
 from coefficients.table import Table, read
 from fitting import FittedForm, Form
 from integrals.reference import Axis
@@ -36,6 +37,8 @@ from quantities import Problem, functions, problem, problems
 from quantities.calling_convention import renamed
 from quantities.defaults import default_calling
 from quantities.problem import ExactCode
+from quantities.registry import names as names_of_quantities
+from quantities.registry import registered
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +127,7 @@ def resolve(name: str) -> Entry:
     a published table are applied unless '@printed' follows its name. Raises ValueError for any
     other name, and for a file that is not a valid table.
     """
-    declared = _declared()
+    declared = _declared(registered().values())
     if name in declared:
         return declared[name]
     if is_packaged(name):
@@ -136,7 +139,7 @@ def resolve(name: str) -> Entry:
         return _function(name)
     if is_file(name):
         return entry_of(corrected(read(Path(name))), name)
-    raise unknown(name, problems(), declared)
+    raise unknown(name, names_of_quantities(), declared)
 
 
 def entry_of(table: Table, name: str) -> Entry:
@@ -146,7 +149,7 @@ def entry_of(table: Table, name: str) -> Entry:
     Raises ValueError for a table without an expression then, and for a table that contradicts the
     form or its own expression.
     """
-    known = problems().get(table.quantity)
+    known = problem(table.quantity) if table.quantity in names_of_quantities() else None
     if known is not None and known.topic and table.about is not None:
         # A user's quantity, such as the column R of data, has the name of a built-in one.
         known = None
@@ -188,10 +191,12 @@ def entries(owner: Problem | None = None) -> list[Entry]:
     Those of one quantity are in this order: as printed, published, refitted, best. Those of all are
     in the order of `names`.
     """
-    found = [*(_kept(name) for name in names()), *_declared().values()]
     if owner is None:
-        return found
+        declared = _declared(registered().values())
+        return [*(_kept(name) for name in names()), *declared.values()]
     order: dict[Kind, int] = {"printed": 0, "published": 1, "refitted": 2, "best": 3}
+    kept = [name for name in names() if packaged_table(name).quantity == owner.name]
+    found = [*(_kept(name) for name in kept), *_declared([owner]).values()]
     own = [entry for entry in found if entry.problem is owner]
     return sorted(own, key=lambda entry: (order[entry.kind], entry.name))
 
@@ -202,7 +207,7 @@ def published(owner: Problem) -> Entry | None:
     Of several, it is the first.
     """
     name = f"published/{owner.name}"
-    return _kept(name) if name in files() else next(iter(_declared(owner).values()), None)
+    return _kept(name) if name in files() else next(iter(_declared([owner]).values()), None)
 
 
 def printed(owner: Problem) -> Entry | None:
@@ -221,7 +226,7 @@ def with_published() -> list[Problem]:
     return [owner for owner in problems().values() if published(owner) is not None]
 
 
-def _declared(owner: Problem | None = None) -> dict[str, Entry]:
+def _declared(owners: Iterable[Problem]) -> dict[str, Entry]:
     """Return the published constants that quantities declare, by name.
 
     The name is published/QUANTITY for the first of a quantity, and published/QUANTITY-FORM for the
@@ -229,13 +234,15 @@ def _declared(owner: Problem | None = None) -> dict[str, Entry]:
     """
     return {
         f"published/{each.name}{f'-{constants.form}' if k else ''}": _published_entry(each, k)
-        for each in ([owner] if owner else problems().values())
+        for each in owners
         for k, constants in enumerate(each.published)
     }
 
 
 @lru_cache(maxsize=64)
 def _published_entry(owner: Problem, number: int) -> Entry:
+    from coefficients.record import published_table  # noqa: PLC0415  it imports the solvers
+
     constants = owner.published[number]
     name = f"published/{owner.name}{f'-{constants.form}' if number else ''}"
     table = published_table(owner, constants)
@@ -244,7 +251,7 @@ def _published_entry(owner: Problem, number: int) -> Entry:
 
 def is_kept(name: str) -> bool:
     """Tell whether a name is that of a table or a quantity whose tables are kept here."""
-    return name in files() or (name in problems() and bool(problem(name).topic))
+    return name in files() or (name in names_of_quantities() and bool(problem(name).topic))
 
 
 def path_of(name: str) -> Path:
@@ -257,29 +264,35 @@ def path_of(name: str) -> Path:
 @lru_cache(maxsize=256)
 def _kept(name: str) -> Entry:
     """Return a packaged table. Raises ValueError for '@printed' if it is not a published one."""
-    stem = name.removesuffix(AS_PRINTED)
-    if stem != name and kind_of(stem) != "published":
-        raise ValueError(f"{stem} is not published: allowed is {stem} without {AS_PRINTED}")
     table = packaged_table(name)
     owner = problem(table.quantity)
     return Entry(name, kind_of(name), owner, table, fitted_form(table, owner))
 
 
 def _closed_form(name: str) -> Entry:
-    known = {f"{EXACT}/{p.name}": p for p in problems().values() if p.exact_code is not None}
-    if name not in known:
-        raise ValueError(
-            f"no closed form is exported as {name!r}: allowed are {', '.join(known)} and tables' "
-            "names"
-        )
+    quantity = name.removeprefix(f"{EXACT}/")
+    if quantity in names_of_quantities() and problem(quantity).exact_code is not None:
+        return Entry(name, "exact", problem(quantity))
+    known = [f"{EXACT}/{p.name}" for p in problems().values() if p.exact_code is not None]
+    raise ValueError(
+        f"no closed form is exported as {name!r}: allowed are {', '.join(known)} and tables' names"
+    )
     return Entry(name, "exact", known[name])
+
+
+def exported_functions(kind: str | None = None) -> dict[str, Problem]:
+    """Return what `quantities.functions` does, and with it the functions of ambient light."""
+    found = functions(kind)
+    if kind in (None, AMBIENT):
+        from coefficients.ambient.problems import ambient_problems  # noqa: PLC0415
+
+        found |= {f"{AMBIENT}/{name}": each for name, each in ambient_problems().items()}
+    return found
 
 
 def _function(name: str) -> Entry:
     """Return the entry of a function that is declared as a quantity without forms."""
-    known = functions()
+    known = exported_functions(name.partition("/")[0])
     if name not in known:
-        kind = name.partition("/")[0]
-        allowed = ", ".join(each for each in known if each.startswith(f"{kind}/"))
-        raise ValueError(f"no function is called {name!r}: allowed are {allowed}")
+        raise ValueError(f"no function is called {name!r}: allowed are {', '.join(known)}")
     return Entry(name, "exact", known[name])

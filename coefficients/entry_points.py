@@ -52,10 +52,11 @@ def unity(tables: Tables) -> list[list[str]]:
         )
         for real in ("float", "half"):
             given = ", ".join(f"{real} {each.name}" for each in arguments_of(functions))
+            out = free_name("Out", _names(functions))
             blocks[-1] += [
-                f"void {name}_{real}({given}, out {real} Out)",
+                f"void {name}_{real}({given}, out {real} {out})",
                 "{",
-                f"    Out = {call_of(functions)};",
+                f"    {out} = {call_of(functions)};",
                 "}",
             ]
     return blocks
@@ -88,28 +89,30 @@ def shadertoy(tables: Tables) -> list[list[str]]:
     have the middle of their domains. A function of one argument is drawn as a curve.
     """
     columns = []
+    names = [name for functions in tables for name in _names(functions)]
+    x, y, column, value = (free_name(each, names) for each in ("x", "y", "column", "value"))
     for index, functions in enumerate(tables):
         arguments = arguments_of(functions)
-        lines = [f"    {'if' if index == 0 else 'else if'} (column == {index})", "    {"]
+        lines = [f"    {'if' if index == 0 else 'else if'} ({column} == {index})", "    {"]
         for place, each in enumerate(arguments):
             low, high = map(decimal, each.domain)
-            part = "x" if place == 0 else "y" if place == len(arguments) - 1 else "0.5"
+            part = x if place == 0 else y if place == len(arguments) - 1 else "0.5"
             lines.append(f"        highp float {each.name} = mix({low}, {high}, {part});")
-        lines.append(f"        value = {call_of(functions)};")
+        lines.append(f"        {value} = {call_of(functions)};")
         if len(arguments) == 1:
-            lines.append("        value = y < value ? 1.0 : 0.2;")
+            lines.append(f"        {value} = {y} < {value} ? 1.0 : 0.2;")
         columns += [*lines, "    }"]
     return [
         [
             "void mainImage(out highp vec4 fragColor, in highp vec2 fragCoord)",
             "{",
-            f"    highp float x = {len(tables)}.0 * fragCoord.x / iResolution.x;",
-            "    highp float y = fragCoord.y / iResolution.y;",
-            "    int column = int(floor(x));",
-            "    x -= floor(x);",
-            "    highp float value = 0.0;",
+            f"    highp float {x} = {len(tables)}.0 * fragCoord.x / iResolution.x;",
+            f"    highp float {y} = fragCoord.y / iResolution.y;",
+            f"    int {column} = int(floor({x}));",
+            f"    {x} -= floor({x});",
+            f"    highp float {value} = 0.0;",
             *columns,
-            "    fragColor = vec4(vec3(value), 1.0);",
+            f"    fragColor = vec4(vec3({value}), 1.0);",
             "}",
         ]
     ]
@@ -122,7 +125,7 @@ def blender_shader(tables: Tables) -> list[list[str]]:
     """
     (functions,) = tables
     given = arguments_of(functions)
-    value = free_name("Value", [each.name for each in given])
+    value = free_name("Value", _names(functions))
     lines = []
     for each in given:
         low, high = map(decimal, each.domain)
@@ -154,14 +157,15 @@ def isf(tables: Tables) -> list[list[str]]:
     last = arguments_of(functions)[-1]
     low, high = map(decimal, last.domain)
     value, top = free_name("value", _names(functions)), height_name(functions)
+    shade = free_name("shade", [*_names(functions), value, top])
     return [
         [
             "void main()",
             "{",
             f"    float {last.name} = mix({low}, {high}, isf_FragNormCoord.x);",
             f"    float {value} = {call_of(functions)};",
-            f"    float shade = isf_FragNormCoord.y * {top} < {value} ? 1.0 : 0.2;",
-            "    gl_FragColor = vec4(vec3(shade), 1.0);",
+            f"    float {shade} = isf_FragNormCoord.y * {top} < {value} ? 1.0 : 0.2;",
+            f"    gl_FragColor = vec4(vec3({shade}), 1.0);",
             "}",
         ]
     ]
@@ -169,4 +173,4 @@ def isf(tables: Tables) -> list[list[str]]:
 
 def _names(functions: tuple[Function, ...]) -> list[str]:
     given = [each.name for each in arguments_of(functions)]
-    return [*given, *(each.name for each in functions), "shade"]
+    return [*given, *(each.name for each in functions)]

@@ -2,7 +2,6 @@
 
 import functools
 import re
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -33,6 +32,7 @@ from programs import (
     trace,
     write_source,
 )
+from programs.printing.comments import command_text
 from programs.printing.printer import Section, write_sections
 from programs.toolchains.verification import corners
 from quantities.loader import option_for
@@ -170,7 +170,7 @@ def source_file(
         bare = write_source(functions, spelled, kind, constants=constants)
         # The function of all tables is not run for the error of one.
         run = bare if holds_code and printed is called else None
-        headers.append(header_of(entry, trial, spelled.key, run, made_by or shlex.join(command)))
+        headers.append(header_of(entry, trial, spelled.key, run, made_by or command_text(command)))
     if printed is not called:
         ((name, cost),) = costs(printed[-1]).items()
         headers[-1] |= {"Cost of all together": f"{name}: {cost_text(cost)}"}

@@ -10,6 +10,7 @@ from coefficients.code_header import cost_text, costs
 from coefficients.ndf_table import NdfBlendTable, NdfTable
 from integrals.piecewise.smith import hidden_area
 from programs import CallSequence, Check, Function, Trial, check, language, precision_of
+from programs.printing.comments import command_again
 from programs.printing.printer import write_source
 from quantities.piecewise.code import ndf_functions
 from shading.directions import direction
@@ -72,7 +73,7 @@ def ndf_source(
         )
         header[f"Rounding of {each.name}"] = f"at most {apart.max():.2e}, emulated in {kind}"
     header["Cost"] = "; ".join(f"{n}: {cost_text(cost)}" for n, cost in costs(functions).items())
-    header["Made by"] = table.command
+    header["Made by"] = command_again(table.command)
     return write_source(functions, key, kind, constants="table", header=header)
 
 

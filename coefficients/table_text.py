@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from coefficients.input_files import read_bounded
 from coefficients.json_text import read_object
 
 T = TypeVar("T")
@@ -14,15 +15,9 @@ T = TypeVar("T")
 def read_text(path: Path, limit: int) -> str:
     """Return the text of a file of at most `limit` bytes. Raises ValueError if it has none."""
     try:
-        if not path.is_file():
-            raise ValueError(f"{path}: no such file")
-        if path.stat().st_size > limit:
-            raise ValueError(f"{path} is larger than {limit} bytes: no table is")
-        return path.read_text(encoding="utf-8-sig")
+        return read_bounded(path, limit).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f"{path} is no UTF-8 text") from None
-    except OSError as error:
-        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
 
 
 def validated(validate: Callable[[dict[str, Any]], T], text: str, source: str) -> T:

@@ -10,6 +10,7 @@ import numpy as np
 from fitting.form import FittedForm, Form
 from fitting.points.domain import Domain
 from fitting.points.scattered import OFF_GRID_SEED, checking_points, judging_points
+from integrals.compilation import jit_for_few_calls
 from integrals.reference import Axis, box_of, in_batches
 
 _BATCH = 8192
@@ -128,6 +129,6 @@ def judge_values(values_at: Callable[[np.ndarray], np.ndarray], domain: Form | D
     return Errors(inside.rms, worst.largest, worst.where, inside.points)
 
 
-@jax.jit
+@jit_for_few_calls
 def _apply(fitted: FittedForm, points):
     return jax.vmap(lambda x: fitted(*x))(points)

@@ -137,6 +137,9 @@ class Form:
 
     def fitted(self, coefficients: Array | np.ndarray) -> "FittedForm":
         """Return the form with these coefficients, given in their shape or as a flat array."""
+        if np.size(coefficients) == self.size and not isinstance(coefficients, Array):
+            # JAX would compile a program that reshapes.
+            coefficients = np.reshape(coefficients, self.coefficient_shape)
         return FittedForm(self, jnp.asarray(coefficients).reshape(self.coefficient_shape))
 
 

@@ -6,6 +6,7 @@ import io
 import math
 import sys
 import zipfile
+from array import array
 from collections.abc import Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
@@ -132,14 +133,17 @@ def _located(path: Path) -> Path:
 def _content(path: Path) -> bytes:
     if path.suffix.lower() not in _READERS:
         raise ValueError(f"{path} is no data: allowed are files {', '.join(_READERS)}")
-    if not path.is_file():
-        raise ValueError(f"{path}: no such file")
-    if path.stat().st_size > MAX_BYTES:
-        raise ValueError(f"{path} is larger than {MAX_BYTES >> 20} MiB")
     try:
-        return path.read_bytes()
+        # Pipes and devices may never end.
+        if not path.is_file():
+            raise ValueError(f"{path}: no such file")
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+    if len(content) > MAX_BYTES:
+        raise ValueError(f"{path} is larger than {MAX_BYTES >> 20} MiB")
+    return content
 
 
 def _csv(content: bytes, path: Path) -> dict[str, np.ndarray]:
@@ -148,22 +152,28 @@ def _csv(content: bytes, path: Path) -> dict[str, np.ndarray]:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f"{path} is no UTF-8 text") from None
-    numbered = [
-        (number, row)
-        for number, row in enumerate(csv.reader(io.StringIO(text), skipinitialspace=True), 1)
-        if row and not row[0].startswith("#")
-    ]
-    if len(numbered) < 2:
+    names: list[str] = []
+    # Eight bytes a number, as lists of a large file would not fit into memory
+    numbers = array("d")
+    try:
+        for number, row in enumerate(csv.reader(io.StringIO(text), skipinitialspace=True), 1):
+            if not row or row[0].startswith("#"):
+                continue
+            if not names:
+                names = [name.strip() for name in row]
+                continue
+            if len(row) != len(names):
+                raise ValueError(
+                    f"{path}:{number} has {len(row)} fields, the header has {len(names)}"
+                )
+            numbers.extend(map(_number, row))
+    except csv.Error as error:
+        raise ValueError(f"{path} is no CSV file: {error}") from None
+    if not numbers:
         raise ValueError(f"{path} has no rows: expected are a header line and lines of numbers")
-    names = [name.strip() for name in numbered[0][1]]
     if len(set(names)) < len(names):
         raise ValueError(f"{path} has two columns of one name: {', '.join(names)}")
-    rows = []
-    for number, row in numbered[1:]:
-        if len(row) != len(names):
-            raise ValueError(f"{path}:{number} has {len(row)} fields, the header has {len(names)}")
-        rows.append([_number(field) for field in row])
-    return dict(zip(names, np.array(rows).T, strict=True))
+    return dict(zip(names, np.array(numbers).reshape(-1, len(names)).T, strict=True))
 
 
 def _number(field: str) -> float:
@@ -175,12 +185,12 @@ def _number(field: str) -> float:
 
 
 def _npy(content: bytes, path: Path) -> dict[str, np.ndarray]:
-    array = _array(io.BytesIO(content), path)
-    if array.dtype.names:
-        return {name: _numbers(array[name], path) for name in array.dtype.names}
-    if array.ndim != 2:
-        raise ValueError(f"{path} has shape {array.shape}: expected is (n, columns)")
-    return {str(k): _numbers(column, path) for k, column in enumerate(array.T)}
+    found = _array(io.BytesIO(content), path)
+    if found.dtype.names:
+        return {name: _numbers(found[name], path) for name in found.dtype.names}
+    if found.ndim != 2:
+        raise ValueError(f"{path} has shape {found.shape}: expected is (n, columns)")
+    return {str(k): _numbers(column, path) for k, column in enumerate(found.T)}
 
 
 def _npz(content: bytes, path: Path) -> dict[str, np.ndarray]:
@@ -194,21 +204,25 @@ def _npz(content: bytes, path: Path) -> dict[str, np.ndarray]:
                 )
                 for each in archive.namelist()
             }
-    except zipfile.BadZipFile:
+    except ValueError:
+        raise
+    # Broken, encrypted or unknown compression raises errors of many types.
+    except Exception:
         raise ValueError(f"{path} is no NPZ file") from None
 
 
 def _array(stream: io.BytesIO, path: Path) -> np.ndarray:
     try:
         return np.lib.format.read_array(stream, allow_pickle=False)
-    except (ValueError, EOFError, OSError, MemoryError):
+    # A broken header raises errors of many types.
+    except Exception:
         raise ValueError(f"{path} is no NPY data without Python objects") from None
 
 
-def _numbers(array: np.ndarray, path: Path) -> np.ndarray:
-    if array.dtype.kind not in "fiub":
-        raise ValueError(f"{path} has an array of {array.dtype}: expected are real numbers")
-    return array.astype(float)
+def _numbers(found: np.ndarray, path: Path) -> np.ndarray:
+    if found.dtype.kind not in "fiub":
+        raise ValueError(f"{path} has an array of {found.dtype}: expected are real numbers")
+    return found.astype(float)
 
 
 def _require(good: np.ndarray, name: str, column: np.ndarray, allowed: str) -> None:

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from integrals.compilation import jit_for_few_calls
 from integrals.data import Data
 from integrals.sampling import Sampling
 
@@ -204,7 +205,7 @@ class Reference:
         return np.asarray(self.estimates(points).value)
 
 
-@functools.partial(jax.jit, static_argnums=(0, 1))
+@jit_for_few_calls(static=(0, 1))
 def _estimates(reference: Reference, options: tuple[tuple[str, Any], ...], points) -> Estimate:
     leg = reference.legs[reference.best_leg]
     return jax.vmap(lambda x: leg(*x, **dict(options)))(points)
@@ -219,7 +220,7 @@ def in_batches(function: Callable, points: np.ndarray, batch: int):
     count = len(points)
     padded = np.concatenate([points, np.repeat(points[-1:], -count % batch, axis=0)])
     parts = [function(padded[first : first + batch]) for first in range(0, count, batch)]
-    return jax.tree.map(lambda *each: jnp.asarray(np.concatenate(each)[:count]), *parts)
+    return jax.tree.map(lambda *each: jax.device_put(np.concatenate(each)[:count]), *parts)
 
 
 def leg(*axes: Axis) -> Callable[[Leg], Leg]:

@@ -9,43 +9,42 @@ a function computes.
 * `printing` and `languages`: source code, and how each language is spelled
 * `toolchains`: compiling, running, verifying and timing the code
 
-The names below are the public ones. Those that need JAX are imported when they are first used, so
-that `programs.languages` does not wait for JAX.
+The names below are the public ones. They are imported when they are first used, so that a
+program that needs only `programs.rounded_text` waits neither for JAX nor for NumPy.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from programs.bounding.branch_and_bound import Bounds as Bounds
-from programs.bounding.branch_and_bound import BranchAndBound as BranchAndBound
-from programs.bounding.denominators import DenominatorBound as DenominatorBound
-from programs.bounding.denominators import bound_below as bound_below
-from programs.bounding.denominators import prove_no_pole as prove_no_pole
-from programs.cost import KINDS as KINDS
-from programs.cost import Cost as Cost
-from programs.cost import count_operations as count_operations
-from programs.functions import Function as Function
-from programs.functions import Parameter as Parameter
-from programs.functions import Record as Record
-from programs.functions import function as function
-from programs.functions import group_inputs as group_inputs
-from programs.functions import input_names as input_names
-from programs.languages import LANGUAGES as LANGUAGES
-from programs.languages import Language as Language
-from programs.languages import language as language
-from programs.languages import precision_of as precision_of
-from programs.operations import OPERATIONS as OPERATIONS
-from programs.precision import PRECISIONS as PRECISIONS
-from programs.program import Program as Program
-from programs.program import Step as Step
-from programs.program import evaluate as evaluate
-from programs.program import interpret as interpret
-from programs.program import is_value as is_value
-from programs.program import reachable_values as reachable_values
-from programs.program import subprogram as subprogram
-
 if TYPE_CHECKING:
+    from programs.bounding.branch_and_bound import Bounds as Bounds
+    from programs.bounding.branch_and_bound import BranchAndBound as BranchAndBound
+    from programs.bounding.denominators import DenominatorBound as DenominatorBound
+    from programs.bounding.denominators import bound_below as bound_below
+    from programs.bounding.denominators import prove_no_pole as prove_no_pole
+    from programs.cost import KINDS as KINDS
+    from programs.cost import Cost as Cost
+    from programs.cost import count_operations as count_operations
+    from programs.functions import Function as Function
+    from programs.functions import Parameter as Parameter
+    from programs.functions import Record as Record
+    from programs.functions import function as function
+    from programs.functions import group_inputs as group_inputs
+    from programs.functions import input_names as input_names
+    from programs.languages import LANGUAGES as LANGUAGES
+    from programs.languages import Language as Language
+    from programs.languages import language as language
+    from programs.languages import precision_of as precision_of
+    from programs.operations import OPERATIONS as OPERATIONS
+    from programs.precision import PRECISIONS as PRECISIONS
     from programs.printing.printer import write_source as write_source
+    from programs.program import Program as Program
+    from programs.program import Step as Step
+    from programs.program import evaluate as evaluate
+    from programs.program import interpret as interpret
+    from programs.program import is_value as is_value
+    from programs.program import reachable_values as reachable_values
+    from programs.program import subprogram as subprogram
     from programs.toolchains.difference import Difference as Difference
     from programs.toolchains.process import ToolchainError as ToolchainError
     from programs.toolchains.registry import toolchain as toolchain
@@ -58,6 +57,33 @@ if TYPE_CHECKING:
     from programs.tracing.tracer import trace as trace
 
 _MODULES = {
+    "LANGUAGES": "programs.languages",
+    "Language": "programs.languages",
+    "language": "programs.languages",
+    "precision_of": "programs.languages",
+    "PRECISIONS": "programs.precision",
+    "KINDS": "programs.cost",
+    "Cost": "programs.cost",
+    "count_operations": "programs.cost",
+    "Function": "programs.functions",
+    "Parameter": "programs.functions",
+    "Record": "programs.functions",
+    "function": "programs.functions",
+    "group_inputs": "programs.functions",
+    "input_names": "programs.functions",
+    "OPERATIONS": "programs.operations",
+    "Program": "programs.program",
+    "Step": "programs.program",
+    "evaluate": "programs.program",
+    "interpret": "programs.program",
+    "is_value": "programs.program",
+    "reachable_values": "programs.program",
+    "subprogram": "programs.program",
+    "Bounds": "programs.bounding.branch_and_bound",
+    "BranchAndBound": "programs.bounding.branch_and_bound",
+    "DenominatorBound": "programs.bounding.denominators",
+    "bound_below": "programs.bounding.denominators",
+    "prove_no_pole": "programs.bounding.denominators",
     "write_source": "programs.printing.printer",
     "ToolchainError": "programs.toolchains.process",
     "toolchain": "programs.toolchains.registry",
@@ -73,7 +99,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name that needs JAX or a toolchain when it is first used."""
+    """Import a public name when it is first used."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_MODULES[name]), name)

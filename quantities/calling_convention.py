@@ -282,7 +282,7 @@ def _summary(text: str, fitted: FittedForm) -> str:
 
 def _result_count(fitted: FittedForm) -> int:
     lower = [axis.lower for axis in fitted.axes[: fitted.form.shared]]
-    return len(fitted.first(*lower))
+    return len(jax.eval_shape(fitted.first, *lower))
 
 
 def _largest_result(fitted: FittedForm) -> float:

@@ -142,7 +142,8 @@ class CurvatureOutput(Whole):
     """`shadefit curvature`: lengths in mm, `area` in mm², curvature in 1/mm.
 
     `mean_curvature` has the least, the 5 %, 50 % and 95 % quantiles, and the largest of vertices.
-    `widths` are those of the smoothing. `concave` is whether concave curvature was kept. `clamped`,
+    `widths` are those of the smoothing. `concave` is whether concave curvature was kept. `drift` is
+    the width of the blurred normals, if their drift was written. `clamped`,
     `made_normals` and `isolated` count vertices, `degenerate` triangles, `non_manifold` edges.
     """
 
@@ -155,6 +156,7 @@ class CurvatureOutput(Whole):
     mean_curvature: list[Number]
     widths: list[Size]
     concave: bool
+    drift: Size | None
     range: Size
     packing_error: Size
     clamped: Count

@@ -34,6 +34,8 @@ from shading.fuzz.layer_light import light_weights as light_weights
 from shading.fuzz.lit_moments import LitMoments as LitMoments
 from shading.fuzz.lit_moments import lit_moments as lit_moments
 from shading.fuzz.phase import fiber_phase_function as fiber_phase_function
+from shading.fuzz.phase import reciprocal_phase_function as reciprocal_phase_function
+from shading.fuzz.phase import reciprocal_scale as reciprocal_scale
 from shading.fuzz.phase import velvet_lobe as velvet_lobe
 from shading.fuzz.phase import velvet_phase_function as velvet_phase_function
 from shading.harmonics import harmonics as harmonics

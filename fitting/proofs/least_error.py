@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import linprog
 
 from fitting.form import FittedForm
 from fitting.solvers.linear_programs import orthonormal_steps, quotient_lines
@@ -85,6 +84,8 @@ def _is_refuted(problem: Residuals, z, error, rows, level: float) -> bool:
     is at most n times the mean, and weighted errors at most n; with the orthonormal steps this
     limits the size of δ to 2n.
     """
+    from scipy.optimize import linprog  # noqa: PLC0415  slow to import
+
     lines = quotient_lines(problem, z, error, rows, 0)
     basis = orthonormal_steps(lines)
     e, count = lines.error / lines.size, basis.shape[1]

@@ -8,7 +8,6 @@ largest. A linear program finds how far a form is from this.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
 
 from fitting.form import FittedForm
 from fitting.proofs.least_error import ROWS, rows_of
@@ -43,6 +42,8 @@ def local_optimality(
     More points can only make `decrease` smaller. Returns None for a form without coefficients or
     errors, and if the linear program is not solved.
     """
+    from scipy.optimize import linprog  # noqa: PLC0415  slow to import
+
     form, z = fitted.form, fitted.constants.ravel()
     if not len(z):
         return None

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 Residual = Callable[[np.ndarray], np.ndarray]
 Jacobian = Callable[[np.ndarray], np.ndarray]
@@ -54,6 +53,8 @@ def descend(
     of residuals. The descent ends if a step lowers the sum of squares by less than the fraction
     `worthwhile`; the rounding of the sum hides gains below 1e-15.
     """
+    from scipy.optimize import least_squares  # noqa: PLC0415  slow to import
+
     best = Descent(np.asarray(start, float), np.inf, False)
 
     def tried(z: np.ndarray) -> np.ndarray:

@@ -4,8 +4,6 @@ from collections.abc import Callable
 
 import jax
 import jax.numpy as jnp
-import lineax as lx
-import optimistix as optx
 from jax import Array
 
 Residual = Callable[[Array], Array]
@@ -30,6 +28,10 @@ def solve_nonlinear(
     size, or after `steps` steps. It does not report whether it converged: judge the result by its
     residual.
     """
+    # Only this needs them, and their import is slow.
+    import lineax as lx  # noqa: PLC0415
+    import optimistix as optx  # noqa: PLC0415
+
     solver = optx.LevenbergMarquardt(rtol=rtol, atol=atol, linear_solver=lx.Normal(lx.Cholesky()))
     solution = optx.least_squares(
         lambda z, _: residual(z), solver, start, max_steps=steps, throw=False

@@ -8,7 +8,6 @@ in a program are of the order of one, however small the errors are and whatever 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
 
 from fitting.solvers.residuals import Residuals, largest_of
 
@@ -172,6 +171,8 @@ def _rows(matrix, limit, some=None, column=None, weight=None) -> tuple[np.ndarra
 
 def solve_program(cost, matrix, limit, bounds) -> np.ndarray | None:
     """Return the z that minimises cost·z with matrix·z ≤ limit and bounds; None if HiGHS fails."""
+    from scipy.optimize import linprog  # noqa: PLC0415  slow to import
+
     for tolerance in _TOLERANCES:
         options = {f"{kind}_feasibility_tolerance": tolerance for kind in ("primal", "dual")}
         for method in _METHODS:

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
@@ -15,6 +14,7 @@ from fitting.linearity import LinearParts, linear_parts
 from fitting.points.grids import Grid, MakeGrid, gauss_grid
 from fitting.solvers.least_squares import solve_linear, solve_nonlinear
 from fitting.solvers.residuals import residuals
+from integrals.compilation import jit_for_few_calls
 
 Progress = Callable[[str], None]
 # A fit on a grid has converged if the cosine of the angle of the residual with the space of the
@@ -76,7 +76,7 @@ class OnGrid:
         difference = form_values(form.fitted(coefficients), grid.points)
         difference = difference - np.asarray(estimates.value)
         on_grid = measure(difference, grid.points, form, grid.weights)
-        error = float(np.max(estimates.error))
+        error = float(np.max(np.asarray(estimates.error)))
         converged = None
         if self.solve is None and form.size:
             converged = _is_stationary(form, coefficients, grid, np.asarray(estimates.value))
@@ -120,15 +120,7 @@ def solve_in_general(form: Form, grid: Grid, exact: Array) -> tuple[Array, str]:
             raise ValueError(f"{form.name} has no starts: give one")
         starts = [_linear(parts, root, exact)]
 
-    @jax.jit
-    def fit(columns: list[Array], root: Array, exact: Array, start: Array) -> Array:
-        def residual(c: Array) -> Array:
-            shaped = c.reshape(form.coefficient_shape)
-            return root * (jax.vmap(lambda *point: form(shaped, *point))(*columns) - exact)
-
-        return solve_nonlinear(residual, start)
-
-    ends = [fit(list(points.T), root, exact, jnp.asarray(start)) for start in starts]
+    ends = [_fit(form, list(points.T), root, np.asarray(exact), np.asarray(s)) for s in starts]
     if len(ends) == 1:
         return ends[0], MARQUARDT
 
@@ -140,9 +132,21 @@ def solve_in_general(form: Form, grid: Grid, exact: Array) -> tuple[Array, str]:
     return min(ends, key=lambda end: np.nan_to_num(rms(end), nan=np.inf)), MARQUARDT
 
 
+@jit_for_few_calls(static=(0,))
+def _fit(form: Form, columns: list[Array], root: Array, exact: Array, start: Array) -> Array:
+    def residual(c: Array) -> Array:
+        shaped = c.reshape(form.coefficient_shape)
+        return root * (jax.vmap(lambda *point: form(shaped, *point))(*columns) - exact)
+
+    return solve_nonlinear(residual, start)
+
+
 def _linear(parts: LinearParts, root: np.ndarray, exact: Array) -> Array:
     """Return the coefficients that minimise the errors times the denominator, which are linear."""
     known = np.asarray(exact)
     matrix = parts.a - known[:, None] * parts.b
     values = (known - parts.a0 / parts.b0) * parts.b0 * root
-    return jax.jit(solve_linear)(matrix * root[:, None], values)
+    return _solve_linear(matrix * root[:, None], values)
+
+
+_solve_linear = jit_for_few_calls(solve_linear)

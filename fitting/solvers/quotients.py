@@ -8,7 +8,6 @@ a pole do not (tests/fitting/test_quotients.py).
 
 from collections.abc import Callable
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -16,6 +15,7 @@ from jax import Array
 from fitting.points.grids import Grid, trapezoid_grid
 from fitting.shapes.quotients import Quotients
 from fitting.solvers.least_squares import solve_linear, solve_nonlinear
+from integrals.compilation import jit_for_few_calls
 from integrals.reference import Axis
 
 # The penalty applies to denominators below this. They are evaluated on a grid of their own, which
@@ -72,14 +72,18 @@ def penalty_points(axes: tuple[Axis, ...]) -> np.ndarray:
 
 def fit_quotient_on_grid(shape: Quotients, grid: Grid, exact: Array) -> Array:
     """Fit one quotient to exact values (points,) on a grid. Returns the coefficients (k,)."""
+    return _fit_quotient(
+        shape, grid.points, penalty_points(grid.axes), np.sqrt(grid.weights), np.asarray(exact)
+    )
 
-    @jax.jit
-    def fit(points: Array, penalised: Array, root: Array, exact: Array) -> Array:
-        return fit_quotients(
-            shape, points, penalised, root, exact, lambda values: root * (values - exact)
-        )
 
-    return fit(grid.points, penalty_points(grid.axes), np.sqrt(grid.weights), exact)
+@jit_for_few_calls(static=(0,))
+def _fit_quotient(
+    shape: Quotients, points: Array, penalised: Array, root: Array, exact: Array
+) -> Array:
+    return fit_quotients(
+        shape, points, penalised, root, exact, lambda values: root * (values - exact)
+    )
 
 
 def _penalty(denominators: Array) -> Array:

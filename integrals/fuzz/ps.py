@@ -24,6 +24,7 @@ from shading import (
     visible_normal,
 )
 from shading.fuzz.lit_cone import scattered_fraction
+from shading.sine_and_cosine import sine_and_cosine
 from shading.types import Scalar
 
 ALPHA = Axis("alpha", 0.0, 1.0, "α", meaning="projected area along the fibre", open_below=True)
@@ -61,6 +62,31 @@ def fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) ->
         alpha,
         sin2_ut=sin2_between(theta_u, theta_f, phi),
         sin2_nt=jnp.sin(theta_f) ** 2,
+        least_alpha=LEAST_ALPHA,
+    )
+
+
+def quick_fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
+    """Return `fraction_at` of a point, about six times as fast under `jax.vmap`.
+
+    Its sines and cosines are polynomials, which the compiler vectorises. So it rounds differently:
+    its error is at most 4ε/α too, but tables were not fitted to its values.
+    """
+    theta_f, theta_u, phi = map(jnp.asarray, (theta_f, theta_u, phi))
+    sin_f, cos_f = sine_and_cosine(theta_f)
+    sin_u, cos_u = sine_and_cosine(theta_u)
+    sin_half, cos_half = sine_and_cosine(phi / 2)
+    sines = sin_u * sin_f
+    # As `sin2_between` has it: full relative precision where the light is along the fibre.
+    less = sine_and_cosine((jnp.asarray(theta_u) - theta_f) / 2)[0] ** 2 + sines * sin_half**2
+    more = sine_and_cosine((jnp.asarray(theta_u) + theta_f) / 2)[1] ** 2 + sines * cos_half**2
+    return scattered_fraction(
+        cos_u,
+        sines * ((cos_half - sin_half) * (cos_half + sin_half)) + cos_u * cos_f,
+        cos_f,
+        alpha,
+        sin2_ut=4 * less * more,
+        sin2_nt=sin_f**2,
         least_alpha=LEAST_ALPHA,
     )
 

@@ -36,6 +36,7 @@ INTERVAL_C = Language(
     literals={"double": "{}"},
     functions={"double": _CALLS},
     reserved=_OWN | C_WORDS,
+    library=frozenset(),
     prologue={"double": ()},
     boolean="truth",
     array_argument="const {type} *{name}",

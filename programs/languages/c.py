@@ -8,6 +8,7 @@ from programs.languages.c_family import (
     reciprocal_root,
     suffixed,
 )
+from programs.languages.c_names import C_LIBRARY, C_MACROS
 from programs.languages.spelling import Language, Precedence, Spelling, spell
 from programs.precision import PRECISIONS
 
@@ -27,7 +28,8 @@ LANGUAGE = Language(
     types={"half": "_Float16", "float": "float", "double": "double"},
     literals={"half": "(_Float16){}f", "float": "{}f", "double": "{}"},
     functions={"half": _HALF, "float": _FLOAT, "double": _DOUBLE},
-    reserved=C_WORDS,
+    reserved=C_WORDS | C_MACROS,
+    library=C_LIBRARY,
     scalar_head="static inline {type} {function}({arguments})",
     array_head="static inline void {function}({arguments})",
     record_opening="typedef struct {name} {{",

@@ -7,6 +7,7 @@ from programs.languages.c_family import (
     SELECTION,
     reciprocal_root,
 )
+from programs.languages.c_names import C_MACROS, CPP_LIBRARY
 from programs.languages.spelling import Language, Spelling, spell
 from programs.precision import PRECISIONS
 
@@ -29,7 +30,8 @@ LANGUAGE = Language(
     types={"half": "_Float16", "float": "float", "double": "double"},
     literals={"half": "_Float16({}f)", "float": "{}f", "double": "{}"},
     functions={"half": _HALF, "float": _FLOAT, "double": _DOUBLE},
-    reserved=CPP_WORDS,
+    reserved=CPP_WORDS | C_MACROS,
+    library=CPP_LIBRARY,
     scalar_head="inline {type} {function}({arguments})",
     array_head="inline void {function}({arguments})",
     namespaces=True,

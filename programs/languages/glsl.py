@@ -1,7 +1,8 @@
 """GLSL 4.00 and ESSL 3.00. Half precision needs an extension; double has few functions."""
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
-from programs.languages.spelling import Language, Spelling, spell, words
+from programs.languages.shading_names import GLSL_LIBRARY, GLSL_WORDS
+from programs.languages.spelling import Language, Spelling, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     SHADING | {"rsqrt": "inversesqrt", "atan2": Spelling("atan({0}, {1})")} | SELECTION
@@ -19,6 +20,7 @@ LANGUAGE = Language(
     literals={"half": "{}hf", "float": "{}", "double": "{}lf"},
     functions={"half": _FUNCTIONS, "float": _FUNCTIONS, "double": _DOUBLE},
     reserved=C_WORDS
+    | GLSL_WORDS
     | words(
         "attribute uniform buffer shared coherent readonly writeonly layout centroid flat smooth",
         "noperspective patch sample invariant precise subroutine in out inout discard mat2 mat3",
@@ -28,8 +30,10 @@ LANGUAGE = Language(
         "output filter superp hvec2 hvec3 hvec4 fvec2 fvec3 fvec4 template namespace using cast",
         "varying float16_t float32_t float64_t",
     ),
+    library=GLSL_LIBRARY,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "clamp({0}, {1}, {2})")),
     vectors={"half": "f16vec4", "float": "vec4", "double": "dvec4"},
+    triples=typed_triples({"half": "f16vec3", "float": "vec3", "double": "dvec3"}),
     prologue={
         "half": ("#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require",),
         "float": (),

@@ -1,6 +1,7 @@
 """JavaScript. All its numbers are doubles."""
 
 from programs.languages.c_family import MATH, SELECTION
+from programs.languages.script_names import JAVASCRIPT_LIBRARY
 from programs.languages.spelling import Language, Precedence, Spelling, spell, words
 
 _NAMES = {operation: f"Math.{name}" for operation, name in MATH.items()} | {
@@ -30,6 +31,7 @@ LANGUAGE = Language(
         "throws transient true try typeof undefined var void volatile while with yield Math NaN",
         "Infinity",
     ),
+    library=JAVASCRIPT_LIBRARY,
     record_opening=None,
     preprocessor=False,
     prologue={"double": ()},
@@ -40,6 +42,7 @@ LANGUAGE = Language(
     array_head="function {function}({arguments})",
     local_variable="const {name} = {value};",
     return_all="return [{values}];",
+    return_three="[{values}]",
     table_opening="const {name} = [",
     table_closing="];",
 )

@@ -1,7 +1,8 @@
 """The Open Shading Language. It has only floats, and no constant variables."""
 
 from programs.languages.c_family import SELECTION, SHADING
-from programs.languages.spelling import Language, spell, words
+from programs.languages.shading_names import OSL_LIBRARY, OSL_MACROS
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 LANGUAGE = Language(
     key="osl",
@@ -14,7 +15,8 @@ LANGUAGE = Language(
             SHADING | {"rsqrt": "inversesqrt", "atan2": "atan2", "expm1": "expm1"} | SELECTION
         )
     },
-    reserved=words(
+    reserved=OSL_MACROS
+    | words(
         "and break closure color continue displacement do else emit float for if illuminance",
         "illuminate int matrix normal not or output point public return string struct surface",
         "shader vector void volume while bool case catch char class const delete default double",
@@ -22,10 +24,12 @@ LANGUAGE = Language(
         "sizeof static switch template this throw true try typedef uniform union unsigned varying",
         "virtual P I N Ng u v dPdu dPdv Ps time dtime dPdtime Ci",
     ),
+    library=OSL_LIBRARY,
     clamps=dict.fromkeys(("float",), ("clamp({0}, {1}, {2})", "clamp({0}, {1}, {2})")),
     prologue={"float": ()},
     boolean="int",
     array_result="output {type} {name}[{size}]",
+    triples=typed_triples({"float": "vector"}, "{vector}[{index}]"),
     local_variable="{type} {name} = {value};",
     table_opening="{type} {name}[{size}] = {{",
 )

@@ -3,6 +3,7 @@
 import keyword
 
 from programs.languages.c_family import MATH
+from programs.languages.script_names import PYTHON_LIBRARY
 from programs.languages.spelling import Language, Precedence, Spelling, spell, words
 
 _NAMES = {operation: f"np.{name}" for operation, name in MATH.items()} | {
@@ -36,6 +37,7 @@ LANGUAGE = Language(
     literals=dict.fromkeys(_TYPES, "{}"),
     functions=dict.fromkeys(_TYPES, _FUNCTIONS),
     reserved=frozenset(keyword.kwlist) | words("np print len range float int match case type"),
+    library=PYTHON_LIBRARY,
     record_opening=None,
     preprocessor=False,
     prologue=dict.fromkeys(_TYPES, ("import numpy as np",)),
@@ -50,10 +52,12 @@ LANGUAGE = Language(
     local_variable="{name} = {value}",
     return_statement="return {value}",
     return_all="return ({values})",
+    return_three="({values})",
     table_opening="{name} = (",
     table_closing=")",
     scalar_conversion="{name} = np.asarray({name}, {type})",
     array_conversion="{name} = [np.asarray(each, {type}) for each in {name}]",
+    vectors_conversion="{name} = [[np.asarray(k, {type}) for k in each] for each in {name}]",
     typed_literal="{type}({})",
     parenthesize_lines=True,
 )

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from programs.languages.hlsl import FUNCTIONS, WORDS
 from programs.languages.hlsl import LANGUAGE as HLSL
+from programs.languages.shading_names import SLANG_LIBRARY
 from programs.languages.spelling import words
 
 # Slang compiles more functions of doubles, but to code without meaning: compiled to SPIR-V, the
@@ -21,4 +22,5 @@ LANGUAGE = replace(
     functions={"half": FUNCTIONS, "float": FUNCTIONS, "double": _DOUBLE},
     reserved=WORDS
     | words("__generic __init associatedtype extension func import let module property var where"),
+    library=SLANG_LIBRARY,
 )

@@ -1,7 +1,8 @@
 """WGSL, the shading language of WebGPU."""
 
 from programs.languages.c_family import SHADING
-from programs.languages.spelling import Language, Spelling, spell, words
+from programs.languages.shading_names import WGSL_LIBRARY
+from programs.languages.spelling import Language, Spelling, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     SHADING
@@ -38,8 +39,10 @@ LANGUAGE = Language(
         "where with writeonly yield array atomic bool f16 f32 i32 u32 ptr vec2 vec3 vec4 mat2x2",
         "mat3x3 mat4x4 sampler _",
     ),
+    library=WGSL_LIBRARY,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     vectors={"half": "vec4<f16>", "float": "vec4<f32>"},
+    triples=typed_triples({"half": "vec3<f16>", "float": "vec3<f32>"}),
     record_number="{name}: {type},",
     record_array="{name}: array<{type}, {size}>,",
     record_closing="}}",

@@ -1,6 +1,7 @@
 """Writing the comments above a file and above each function."""
 
-from collections.abc import Mapping
+import shlex
+from collections.abc import Mapping, Sequence
 
 from programs.functions import Function
 from programs.languages import Language
@@ -30,7 +31,32 @@ def function_comment(function: Function, language: Language) -> list[str]:
     return lines + (_comment(language, ", ".join(domains) + ".") if domains else [])
 
 
-def _comment(language: Language, text: str) -> list[str]:
+def command_text(words: Sequence[str]) -> str:
+    """Write a command for a comment so that a shell reads the same words if it is copied.
+
+    Each word is first written with the characters of comments, and then quoted: another character
+    that became a quote would end the quotation. So a file whose name has such characters is shown
+    by another name.
+    """
+    return shlex.join(" ".join(_plain(word).split()) for word in words)
+
+
+def command_again(text: str) -> str:
+    """Write a command line of `shadefit`, which may come from a hostile file, as `command_text`.
+
+    Other text becomes one quoted word.
+    """
+    try:
+        words = shlex.split(text)
+    except ValueError:
+        words = []
+    return command_text(words if words[:1] == ["shadefit"] else [text])
+
+
+def _plain(text: str) -> str:
     # A backslash at the end of a line would make the next line of code part of the comment.
-    safe = ascii_text(text).replace("\\", "/")
-    return wrap_words(safe, f"{language.comment} ", f"{language.comment}   ")
+    return ascii_text(text).replace("\\", "/")
+
+
+def _comment(language: Language, text: str) -> list[str]:
+    return wrap_words(_plain(text), f"{language.comment} ", f"{language.comment}   ")

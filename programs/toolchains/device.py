@@ -19,6 +19,7 @@ import numpy as np
 from programs.functions import Function
 from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.process import TIME_LIMIT, ToolchainError, packaged_file, quiet_environment
+from programs.toolchains.running import end, start
 
 # Precision -> the feature of the device that it needs; float needs none.
 FEATURES = {"half": "shader-f16", "double": "shader-f64"}
@@ -111,7 +112,7 @@ def _start() -> _Worker:
     ours, theirs = Pipe()
     errors = TemporaryFile()  # noqa: SIM115 - lives as long as the worker
     script = Path(__file__).with_name("device_worker.py")
-    process = subprocess.Popen(
+    process = start(
         [sys.executable, "-I", str(script), str(theirs.fileno())],
         pass_fds=(theirs.fileno(),),
         stdin=subprocess.DEVNULL,
@@ -138,8 +139,7 @@ def _end(worker: _Worker) -> str:
     if worker in _workers:
         _workers.remove(worker)
     worker.connection.close()
-    worker.process.kill()
-    worker.process.wait()
+    end(worker.process)
     worker.errors.seek(0)
     log = worker.errors.read().decode("utf-8", "replace")
     worker.errors.close()

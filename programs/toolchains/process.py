@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
-from programs.toolchains.temporary import unfinished
+from programs.toolchains.running import run
+from programs.toolchains.temporary import temporary_folder
 
 # Seconds. The largest table compiles in a fraction of it; a tool that takes longer has hung.
 TIME_LIMIT = 60.0
@@ -28,7 +28,7 @@ class ToolchainError(RuntimeError):
 @contextmanager
 def workspace() -> Generator[Path, None, None]:
     """Make a temporary folder for sources and programs; it is removed whatever happens."""
-    with TemporaryDirectory(prefix="shadefit-") as folder, unfinished(Path(folder)) as path:
+    with temporary_folder() as path:
         yield path
 
 
@@ -49,18 +49,16 @@ def execute(
     """
     words = [str(word) for word in command]
     try:
-        done = subprocess.run(
-            words, cwd=folder, input=data, capture_output=True, timeout=seconds, check=False
-        )
+        status, out, complaint = run(words, seconds, folder, data)
     except subprocess.TimeoutExpired as error:
         raise ToolchainError(f"{failure}: no end after {seconds:g} s", words[0]) from error
     except OSError as error:
         raise ToolchainError(f"{failure}: {words[0]} does not start", str(error)) from error
-    if done.returncode != 0:
+    if status != 0:
         # Some compilers print errors to standard output.
-        log = (done.stdout + b"\n" + done.stderr).decode("utf-8", "replace")
-        raise ToolchainError(f"{failure} (status {done.returncode})", log)
-    return done.stdout
+        log = (out + b"\n" + complaint).decode("utf-8", "replace")
+        raise ToolchainError(f"{failure} (status {status})", log)
+    return out
 
 
 def command_path(name: str) -> Path | None:
@@ -89,12 +87,10 @@ def first_line(*command: str | Path) -> str:
     """Return the first line that a program prints, such as its version; its name if it fails."""
     name = Path(command[0]).name
     try:
-        done = subprocess.run(
-            [str(word) for word in command], capture_output=True, timeout=TIME_LIMIT, check=False
-        )
+        _, out, complaint = run([str(word) for word in command], TIME_LIMIT)
     except (OSError, subprocess.TimeoutExpired):
         return name
-    lines = (done.stdout + done.stderr).decode("utf-8", "replace").split("\n")
+    lines = (out + complaint).decode("utf-8", "replace").split("\n")
     return next((line.strip() for line in lines if line.strip()), name)
 
 

@@ -10,6 +10,7 @@ from jax.extend.core import JaxprEqn
 from programs.operations import OPERATIONS
 from programs.program import Operand
 from programs.tracing.builder import Builder
+from programs.tracing.moves import MOVES
 
 # Primitives that call another jaxpr -> the parameter that holds that jaxpr
 CALLS = {
@@ -174,6 +175,16 @@ def _contract(builder: Builder, dimension_numbers: Any, left: Any, right: Any) -
     return _fold(builder, "add", products, (2,)).reshape(shape)
 
 
+def evaluate_primitive(equation: JaxprEqn, operands: list[Any]) -> list[np.ndarray]:
+    """Return the results of a primitive for arrays of numbers."""
+    move = MOVES.get(equation.primitive.name)
+    if move is not None:
+        return move(operands, equation.params)
+    results = equation.primitive.bind(*operands, **equation.params)
+    results = results if equation.primitive.multiple_results else [results]
+    return list(map(np.asarray, results))
+
+
 def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
     positions = _MOVES[equation.primitive.name] or range(len(operands))
     # Number the elements and let the primitive move the numbers: they show where each element goes.
@@ -181,14 +192,13 @@ def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
     arguments = list(operands)
     for position in positions:
         operand = operands[position]
-        arguments[position] = np.arange(operand.size).reshape(operand.shape) + len(pool)
+        numbers = np.arange(len(pool), len(pool) + operand.size)
+        arguments[position] = numbers.reshape(operand.shape)
         pool.extend(_as_operands(operand).reshape(-1))
     if any(argument.dtype == object for argument in arguments):
         raise ValueError("an index that depends on the inputs; allowed: constant indices")
-    results = equation.primitive.bind(*arguments, **equation.params)
-    results = results if equation.primitive.multiple_results else [results]
     gathered = []
-    for numbers in map(np.asarray, results):
+    for numbers in evaluate_primitive(equation, arguments):
         if numbers.size and not (numbers.min() >= 0 and numbers.max() < len(pool)):
             raise ValueError("an index out of bounds; allowed: indices inside the array")
         flat = np.empty(numbers.size, dtype=object)

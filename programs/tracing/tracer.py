@@ -14,7 +14,12 @@ from programs.functions import Function, group_inputs, input_names
 from programs.program import Program
 from programs.tracing.authorship import Place, assigned_name, is_jax, places
 from programs.tracing.builder import Builder
-from programs.tracing.primitives import CALLS, apply_primitive, writable_primitives
+from programs.tracing.primitives import (
+    CALLS,
+    apply_primitive,
+    evaluate_primitive,
+    writable_primitives,
+)
 
 # More steps than any language allows. The limit stops the unrolling of very long loops.
 LIMIT = 50_000
@@ -91,9 +96,7 @@ def _run(name: str, builder: Builder, equation: JaxprEqn, operands: list[Any]) -
     if primitive == "scan":
         return _unroll(name, builder, equation, operands)
     if all(operand.dtype != object for operand in operands):
-        results = equation.primitive.bind(*operands, **equation.params)
-        results = results if equation.primitive.multiple_results else [results]
-        folded = [np.asarray(result) for result in results]
+        folded = evaluate_primitive(equation, operands)
         if not builder.keep_undefined or all(map(_is_defined, folded)):
             return folded
     try:

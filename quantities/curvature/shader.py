@@ -17,7 +17,15 @@ from integrals.sampling import Sampling
 from programs.functions import Function, Parameter, function
 from quantities.calling_convention import CallingConvention, clamped
 from quantities.problem import ExactCode, Problem
-from shading.curvature import effective, packed, published, tangent_frame, unpacked
+from shading.curvature import (
+    along_light,
+    effective,
+    equivalent_cylinder,
+    packed,
+    published,
+    tangent_frame,
+    unpacked,
+)
 from shading.curvature.packing import LARGEST_CODE, RANGE
 from shading.directions import direction
 
@@ -47,20 +55,28 @@ _VECTORS = tuple(
 _ENTRIES = tuple(Parameter(name, (-LARGEST, LARGEST), "1/mm") for name in ("IIx", "IIy", "IIz"))
 _LIGHT = tuple(Parameter(f"light{axis}", _UNIT) for axis in "XYZ")
 
+# n·l, which the drift of the normal may take beyond 1
+_COSINE = Parameter("NdotL", (-2.0, 2.0))
+
 Method = Callable[[Array, Array], Array]
 
 
 def _from_light(name: str, method: Method, summary: str) -> Function:
     def value(*given):
-        tangent, bitangent, tensor, light = (given[k : k + 3] for k in (0, 3, 6, 9))
-        entries = jnp.stack([clamped(each, -LARGEST, LARGEST) for each in tensor])
-        along = [
-            checkpoint_name(clamped(_dot(light, axis), *_UNIT), name)
-            for axis, name in ((tangent, "alongTangent"), (bitangent, "alongBitangent"))
-        ]
-        return method(entries, jnp.stack(along))
+        return method(*_tensor_and_light(given))
 
     return function(name, (*_VECTORS, *_ENTRIES, *_LIGHT), value, summary)
+
+
+def _tensor_and_light(given: Sequence[Array]) -> tuple[Array, Array]:
+    """Return the tensor and the projected light of tangent, bitangent, tensor and light."""
+    tangent, bitangent, tensor, light = (given[k : k + 3] for k in (0, 3, 6, 9))
+    entries = jnp.stack([clamped(each, -LARGEST, LARGEST) for each in tensor])
+    along = [
+        checkpoint_name(clamped(_dot(light, axis), *_UNIT), name)
+        for axis, name in ((tangent, "alongTangent"), (bitangent, "alongBitangent"))
+    ]
+    return entries, jnp.stack(along)
 
 
 def _dot(one: Sequence[Array], other: Sequence[Array]) -> Array:
@@ -108,6 +124,13 @@ def _light_arguments(points: Array) -> Array:
     return jax.vmap(row)(points)
 
 
+_REMARK = (
+    "tangent and bitangent are orthogonal unit vectors in the surface, light is the unit one "
+    "to the light. II is the curvature tensor (tangent, mixed, bitangent) in 1/mm, positive "
+    "where the surface is convex"
+)
+
+
 def _light_problem(key: str, method: Method, called: str, summary: str, definition: str) -> Problem:
     axes = (*_DIRECTIONS, *_TENSOR)
 
@@ -117,14 +140,57 @@ def _light_problem(key: str, method: Method, called: str, summary: str, definiti
         value = method(jnp.stack(point[4:7]), frame @ direction(point[2], point[3]))
         return Estimate(value, jnp.asarray(_ROUNDING))
 
-    remark = (
-        "tangent and bitangent are orthogonal unit vectors in the surface, light is the unit one "
-        "to the light. II is the curvature tensor (tangent, mixed, bitangent) in 1/mm, positive "
-        "where the surface is convex. A fit of diffusion takes the absolute value of the result"
-    )
+    remark = f"{_REMARK}. A fit of diffusion takes the absolute value of the result"
     made = _from_light(called, method, summary)
     return _problem(
         key, "κ", summary, definition, axes, closed_form, made, _light_arguments, remark
+    )
+
+
+def _cylinder_value(*given):
+    return tuple(equivalent_cylinder(*_tensor_and_light(given), clamped(given[12], -2.0, 2.0)))
+
+
+_CYLINDER = function(
+    "EquivalentCylinder",
+    (*_VECTORS, *_ENTRIES, *_LIGHT, _COSINE),
+    _cylinder_value,
+    "The cosine and the curvature for a fit of D in w[0] and w[1], and the scale of D in w[2].",
+    3,
+    "w",
+)
+
+
+def _cylinder_problem() -> Problem:
+    axes = (*_DIRECTIONS, *_TENSOR)
+
+    def parts(point):
+        normal = direction(point[0], point[1])
+        frame, light = tangent_frame(normal), direction(point[2], point[3])
+        return frame, light, normal @ light
+
+    @leg(*axes)
+    def closed_form(*point):
+        frame, light, cosine = parts(point)
+        found = equivalent_cylinder(jnp.stack(point[4:7]), frame @ light, cosine)
+        return Estimate(jnp.stack(found), jnp.asarray(_ROUNDING))
+
+    def arguments(points):
+        given = _light_arguments(points)
+        cosines = jax.vmap(lambda point: parts(point)[2])(points)
+        return jnp.concatenate([given, cosines[:, None]], axis=1)
+
+    return _problem(
+        "equivalent-cylinder",
+        "s",
+        "The lit cylinder that stands for a curved surface in a light",
+        "s² = c² + |II l_t|²/‖II‖² with c = n·l, l_t = (l·t, l·b); the light is s D(c/s, ‖II‖)",
+        axes,
+        closed_form,
+        _CYLINDER,
+        jax.jit(arguments),
+        "NdotL is not clamped at 0. To it may be added the variance of the channel times the drift "
+        "of the normal along the light. The result for a fit is w[2] D(w[0], w[1]). " + _REMARK,
     )
 
 
@@ -203,12 +269,20 @@ CURVATURES: dict[str, Problem] = {
             "κ = l_tᵀ II l_t with l_t = (l·t, l·b)",
         ),
         _light_problem(
+            "along-light",
+            along_light,
+            "CurvatureAlongLight",
+            "Curvature of the surface along a light, normalised; the mean for a light along n",
+            "κ = l_tᵀ II l_t / |l_t|² with l_t = (l·t, l·b)",
+        ),
+        _light_problem(
             "effective",
             effective,
             "EffectiveCurvatureFromLight",
             "Curvature by which a light is spread over a blurred patch",
             "κ² = |II l_t|² + (n·l)² ‖II‖² with l_t = (l·t, l·b)",
         ),
+        _cylinder_problem(),
         *_packing_problems(),
     )
 }

@@ -10,13 +10,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from scipy.optimize import linprog
 
 from fitting.form import FittedForm, Form, Proofs, Stage
 from fitting.goal import Goal
 from fitting.points.grids import Grid, trapezoid_grid
 from fitting.solvers.on_grid import OnGrid
 from integrals import VELVET
+from integrals.compilation import jit_for_few_calls
 from integrals.fuzz.velvet import normalisation, series_coefficients
 from integrals.reference import restricted
 from programs.bounding.denominators import DenominatorBound, bound_below
@@ -36,7 +36,7 @@ _SERIES_TERMS = 24
 
 AXES = restricted(VELVET.axes, asymmetry=(-0.95, 0.0))
 
-_norms = jax.jit(jax.vmap(normalisation))
+_norms = jit_for_few_calls(jax.vmap(normalisation))
 
 
 def _value(c, asymmetry: Scalar) -> Array:
@@ -52,6 +52,8 @@ def fit_conservative_norm(grid: Grid, exact: Array) -> Array:
     A linear program does so at the nodes of a grid of k. Then c₀ is raised until r̃ is below r
     between the nodes too.
     """
+    from scipy.optimize import linprog  # noqa: PLC0415  slow to import
+
     k = grid.points[:, 0]
     keep = k < 0
     x, r = -k[keep], np.asarray(exact)[keep]

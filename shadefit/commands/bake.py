@@ -57,7 +57,12 @@ def bake(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="File to write; by default SOURCE.EXTENSION.")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            help="File to write, or - for standard output; by default SOURCE.EXTENSION.",
+        ),
     ] = None,
     json: Json = False,
 ) -> None:
@@ -77,7 +82,7 @@ def bake(
     from shadefit.commands.table_records import errors_record
     from shadefit.outputs import BakedAxis, BakeOutput, BakeSource, BesideTable
     from shadefit.progress import stages
-    from shadefit.terminal import print_json
+    from shadefit.terminal import apart_from, print_json
 
     counts = _size(size)
     made = _source(source)
@@ -144,10 +149,11 @@ def bake(
             for each in others
         ],
     )
-    if json:
-        print_json(report)
-    else:
-        print_bake(report)
+    with apart_from(path):
+        if json:
+            print_json(report)
+        else:
+            print_bake(report)
 
 
 @dataclass(frozen=True)
@@ -177,11 +183,12 @@ class _Source:
 def _source(name: str) -> _Source:
     from coefficients.catalogue import EXACT, resolve
     from coefficients.exported_code import operations_of
-    from quantities import problems
+    from quantities import problem
+    from quantities.registry import names
 
     quantity = name.removeprefix(f"{EXACT}/")
-    if quantity in problems():
-        return _Source(problems()[quantity])
+    if quantity in names():
+        return _Source(problem(quantity))
     entry = resolve(name)
     return _Source(
         entry.problem, entry.require_fitted(), operations_of(entry), entry.kind == "file"

@@ -1,4 +1,4 @@
-"""`shadefit curvature`: write the curvature tensor of each vertex of a mesh."""
+"""`shadefit curvature`: write the curvature of the vertices of a mesh, and draw it as skin."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -8,6 +8,7 @@ import typer
 from shadefit.commands.options import Json
 
 if TYPE_CHECKING:
+    from shadefit.curvature.mesh_picture import View
     from shadefit.material_outputs import CurvatureOutput
 
 
@@ -36,41 +37,83 @@ def curvature(
         float,
         typer.Option("--range", help="Largest curvature of the packed bytes, in 1/mm."),
     ] = 0.5,
+    drift: Annotated[
+        float | None,
+        typer.Option(
+            help="Also write the drift of normals that are blurred by this width σ in mm; "
+            "1.4 suits the red light of skin."
+        ),
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(help="PNG file with the mesh as skin: N·L, lookup table, fit, curvature."),
+    ] = None,
+    view: Annotated[
+        str,
+        typer.Option(
+            help="Azimuth and height of the viewer in degrees. At 0,0 the viewer is at +z, and y "
+            "is up.",
+            metavar="AZIMUTH,HEIGHT",
+        ),
+    ] = "0,0",
+    light: Annotated[
+        str,
+        typer.Option(
+            help="Azimuth and height of the light in degrees, from the viewer.",
+            metavar="AZIMUTH,HEIGHT",
+        ),
+    ] = "-60,30",
+    size: Annotated[
+        int, typer.Option(help="Width of the mesh in the picture in pixels, 32 to 1024.")
+    ] = 320,
     json: Json = False,
 ) -> None:
     """Compute the curvature tensor of each vertex of a mesh, for skin.
 
     The PLY file has the tensor in 1/mm, its tangent, and the tensor packed into four bytes. Without
-    -o only the summary is printed.
+    -o and --picture only the summary is printed.
     """
-    from coefficients.files import require_writable_file, write_whole_bytes
+    from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
     from shadefit.curvature import curvature as curvature_of
     from shadefit.curvature.files import ply_bytes, read_mesh
-    from shadefit.curvature.smoothing import convex, smoothed
+    from shadefit.curvature.smoothing import convex, normal_drift, smoothed
     from shadefit.curvature.vertex_bytes import require_range
-    from shadefit.terminal import print_json
+    from shadefit.terminal import apart_from, print_json
 
     if unit is None:
         raise ValueError("the unit of the mesh is not known: give --unit mm, cm, m or in")
     chosen = _widths(widths)
     require_range(largest)
+    if drift is not None and not 1e-3 <= drift <= 1e3:
+        raise ValueError(f"--drift {drift:g}: allowed are 0.001 to 1000, in mm")
+    seen = _view(view, light, size)
     if out is not None:
-        if out.suffix.lower() != ".ply":
+        if out != OUTPUT and out.suffix.lower() != ".ply":
             raise ValueError(f"{out}: allowed is a file that ends with .ply")
         require_writable_file(out)
+    if picture is not None:
+        if picture.suffix.lower() != ".png":
+            raise ValueError(f"{picture}: allowed is a file that ends with .png")
+        require_writable_file(picture)
     shape = read_mesh(mesh, unit)
-    found = curvature_of(shape)
-    if not keep_concave:
-        found = convex(found)
+    raw = curvature_of(shape)
+    found = raw if keep_concave else convex(raw)
     if chosen:
         found = smoothed(shape, found, chosen)
+    leaning = None if drift is None else normal_drift(shape, raw, drift)
+    files = {}
     if out is not None:
-        write_whole_bytes(out, ply_bytes(shape, found, largest))
-    record = _record(mesh, unit, chosen, keep_concave, largest, shape, found, out)
-    if json:
-        print_json(record)
-    else:
-        _print(record)
+        files[out] = ply_bytes(shape, found, largest, leaning)
+    if picture is not None:
+        files[picture] = _drawn(shape, raw, found, seen)
+    for path, content in files.items():
+        write_whole_bytes(path, content)
+    record = _record(mesh, unit, chosen, keep_concave, largest, shape, found, drift, list(files))
+    with apart_from(out):
+        if json:
+            print_json(record)
+        else:
+            _print(record)
 
 
 def _widths(text: str) -> list[float]:
@@ -87,7 +130,41 @@ def _widths(text: str) -> list[float]:
     return found
 
 
-def _record(path, unit, widths, keep_concave, largest, shape, found, out) -> "CurvatureOutput":
+def _view(view: str, light: str, size: int) -> "View":
+    from shadefit.curvature.mesh_picture import View
+
+    if not 32 <= size <= 1024:
+        raise ValueError(f"--size {size}: allowed are 32 to 1024 pixels")
+    return View(*_angles("--view", view), *_angles("--light", light), size)
+
+
+def _angles(option: str, text: str) -> tuple[float, float]:
+    """Return an azimuth and a height in radians."""
+    from math import radians
+
+    try:
+        azimuth, height = (float(each) for each in text.split(","))
+    except ValueError:
+        azimuth = height = float("nan")
+    if not (-360 <= azimuth <= 360 and -90 <= height <= 90):
+        raise ValueError(
+            f"{option} {text}: allowed are an azimuth from -360 to 360 and a height from -90 to "
+            "90, in degrees, like 30,10"
+        )
+    return radians(azimuth), radians(height)
+
+
+def _drawn(shape, raw, found, view: "View") -> bytes:
+    from shadefit.curvature.mesh_picture import draw_mesh
+    from shadefit.curvature.skin_light import skin_of
+    from shadefit.curvature.smoothing import DRIFT_WIDTH
+
+    return draw_mesh(shape, skin_of(shape, raw, found, DRIFT_WIDTH), view)
+
+
+def _record(
+    path, unit, widths, keep_concave, largest, shape, found, drift, files
+) -> "CurvatureOutput":
     import numpy as np
 
     from shadefit.curvature.vertex_bytes import clamped_count
@@ -112,7 +189,8 @@ def _record(path, unit, widths, keep_concave, largest, shape, found, out) -> "Cu
         degenerate=found.degenerate,
         isolated=found.isolated,
         non_manifold=found.non_manifold,
-        files=[] if out is None else [str(out)],
+        drift=drift,
+        files=[str(each) for each in files],
     )
 
 
@@ -124,7 +202,7 @@ def _area(shape) -> float:
 
 
 def _print(record: "CurvatureOutput") -> None:
-    from shadefit.terminal import print_table
+    from shadefit.terminal import print_lines, print_table
 
     names = ["least", "5 %", "median", "95 %", "largest"]
     print_table(
@@ -144,4 +222,4 @@ def _print(record: "CurvatureOutput") -> None:
         if count:
             print(f"{count} {text}")
     for each in record.files:
-        print(each)
+        print_lines(each)

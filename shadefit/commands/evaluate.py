@@ -154,13 +154,16 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     """Evaluate the quantity `name` at the points of a file; write the columns, or print them."""
     import numpy as np
 
-    from coefficients.files import require_writable_file, write_whole_bytes
+    from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
     from fitting import form_values
     from integrals.many_points import estimates_at_many
+    from shadefit.encoding import visible
     from shadefit.outputs import PointsOutput
-    from shadefit.terminal import print_json
+    from shadefit.terminal import print_json, print_lines
 
     owner = _owner(name)
+    if out == OUTPUT:
+        out = None
     if out is not None:
         require_format(out)
         require_writable_file(out)
@@ -192,18 +195,18 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
             )
         )
     elif out is None:
-        print(csv_text(columns), end="")
+        print(visible(csv_text(columns)), end="")
     else:
-        print(out)
+        print_lines(out)
 
 
 def _owner(name: str) -> "Problem":
-    from quantities import problems
+    from quantities import problem
+    from quantities.registry import names
 
-    known = problems()
-    if name not in known:
-        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(known)}")
-    return known[name]
+    if name not in names():
+        raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(names())}")
+    return problem(name)
 
 
 def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:

@@ -95,6 +95,8 @@ def export(
     that was measured.
     """
     require_tables(tables)
+    if output == Path("-"):
+        output = None
     if bundle is not None:
         from coefficients.bundles import bundle as find_bundle
         from coefficients.bundles import language_of_bundle
@@ -102,11 +104,7 @@ def export(
         to, interface = to or language_of_bundle(bundle), interface or "material"
         layout = layout or find_bundle(bundle).layout
     key = _language(to, output)
-    from coefficients.catalogue import resolve
-    from coefficients.code_options import CodeOptions
-    from coefficients.exported_code import source_file
     from coefficients.files import require_writable_file, write_whole
-    from coefficients.table import serialise
     from shadefit.encoding import shown_json
 
     if output is not None:
@@ -131,8 +129,12 @@ def export(
             raise ValueError(
                 f"{len(tables)} tables are for code: JSON is of one; allowed: --to LANG"
             )
-        text = serialise(resolve(tables[0]).require_table())
+        text = _content(tables[0])
     else:
+        from coefficients.catalogue import resolve
+        from coefficients.code_options import CodeOptions
+        from coefficients.exported_code import source_file
+
         options = CodeOptions(
             interface=interface or "listing",
             layout=layout or "array",
@@ -148,6 +150,18 @@ def export(
         print(shown_json(text) if key == _JSON else text, end="")
     else:
         write_whole(output, text)
+
+
+def _content(name: str) -> str:
+    """Return a table as JSON. A packaged table is written without JAX."""
+    from coefficients.packaged import is_packaged, packaged_table
+    from coefficients.table import serialise
+
+    if is_packaged(name):
+        return serialise(packaged_table(name))
+    from coefficients.catalogue import resolve
+
+    return serialise(resolve(name).require_table())
 
 
 def _language(to: str | None, output: Path | None) -> str:

@@ -25,14 +25,14 @@ def list_tables(json: Json = False) -> None:
         return
     print_table(
         "Tables",
-        ["name", "of", "form", "rms", "largest", "in"],
+        ["name", "rms", "largest", "of", "form", "in"],
         [
-            [name, table.quantity, table.form, *_errors(table), _domain(table)]
+            [name, *_errors(table), table.quantity, table.form, _domain(table)]
             for name, table in tables.items()
         ],
         "Errors as the table states them, off the grid; 'compare' measures published ones. Those "
         "with ≤ are proven.",
-        below=1,
+        below=3,
     )
 
 

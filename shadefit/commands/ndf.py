@@ -74,7 +74,7 @@ def ndf(
     from coefficients.files import write_whole
     from coefficients.ndf_table import serialise_ndf
     from shadefit.material_outputs import NdfCheck
-    from shadefit.terminal import print_json
+    from shadefit.terminal import apart_from, print_json
 
     _require(linear_in, to, code, verify, out)
     table = _table(
@@ -103,11 +103,12 @@ def ndf(
         NdfCheck(function=key, language=each.language, status=each.status, reason=each.reason)
         for key, each in checks.items()
     ]
-    if json:
-        print_json(_output(table, verified, files, _costs(table) if cost else []))
-    else:
-        _print(table, verified, files)
-        _print_costs(_costs(table) if cost else [])
+    with apart_from(out, code):
+        if json:
+            print_json(_output(table, verified, files, _costs(table) if cost else []))
+        else:
+            _print(table, verified, files)
+            _print_costs(_costs(table) if cost else [])
     if any(each.status == "failed" for each in verified):
         raise typer.Exit(1)
 
@@ -207,7 +208,7 @@ def _print_costs(costs: "list[NdfCost]") -> None:
 
 def _print(table: "NdfTable | NdfBlendTable", verified: "list[NdfCheck]", files: list[str]) -> None:
     from coefficients.ndf_table import NdfTable
-    from shadefit.terminal import print_table
+    from shadefit.terminal import print_lines, print_table
 
     profiles = [table] if isinstance(table, NdfTable) else [table.x, table.y]
     errors = table.errors
@@ -228,9 +229,9 @@ def _print(table: "NdfTable | NdfBlendTable", verified: "list[NdfCheck]", files:
     )
     for each in verified:
         why = f": {each.reason}" if each.reason else ""
-        print(f"{each.function} in {each.language}: {each.status}{why}")
+        print_lines(f"{each.function} in {each.language}: {each.status}{why}")
     for each in files:
-        print(each)
+        print_lines(each)
 
 
 def _table(

@@ -3,9 +3,12 @@
 import csv
 import io
 import math
+from array import array
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from coefficients.input_files import read_bounded
 
 if TYPE_CHECKING:
     import numpy as np
@@ -14,6 +17,7 @@ if TYPE_CHECKING:
 
 # More points than these would not fit into memory with their values.
 MAX_POINTS = 1 << 24
+MAX_BYTES = 1 << 30
 FORMATS = (".csv", ".npy")
 
 
@@ -32,10 +36,7 @@ def read_points(path: Path, axes: "Sequence[Axis]") -> "np.ndarray":
     be read as such, and for a point outside the domain.
     """
     extension = require_format(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+    data = read_bounded(path, MAX_BYTES)
     points = _from_csv(path, data, axes) if extension == ".csv" else _from_npy(path, data, axes)
     if not 1 <= len(points) <= MAX_POINTS:
         raise ValueError(f"{path} has {len(points)} points: allowed are 1 to {MAX_POINTS}")
@@ -84,10 +85,10 @@ def _from_csv(path: Path, data: bytes, axes: "Sequence[Axis]") -> "np.ndarray":
     try:
         # A byte order mark, which spreadsheets write, is not part of the first name.
         text = io.StringIO(data.decode("utf-8-sig").rstrip() + "\n", newline="")
-        lines = list(csv.reader(text, strict=True))
+        lines = csv.reader(text, strict=True)
+        header = [name.strip() for name in next(lines)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f"{path} is no CSV file: {error}") from None
-    header = [name.strip() for name in lines[0]] if lines else []
     places = []
     for axis in axes:
         names = {axis.name, axis.name.replace("_", "-"), axis.symbol, axis.alias}
@@ -97,14 +98,20 @@ def _from_csv(path: Path, data: bytes, axes: "Sequence[Axis]") -> "np.ndarray":
             wanted = ", ".join(each.name for each in axes)
             raise ValueError(f"{path} has {what} {axis.name}: its first line must name {wanted}")
         places += found
-    rows = []
-    for number, line in enumerate(lines[1:], start=2):
-        if len(line) != len(header):
-            raise ValueError(
-                f"{path}, line {number} has {len(line)} cells: expected are {len(header)}"
-            )
-        rows.append([_number(path, number, line[k]) for k in places])
-    return np.array(rows, float).reshape(-1, len(axes))
+    # Eight bytes a number, as lists of a large file would not fit into memory
+    numbers = array("d")
+    try:
+        for number, line in enumerate(lines, start=2):
+            if len(line) != len(header):
+                raise ValueError(
+                    f"{path}, line {number} has {len(line)} cells: expected are {len(header)}"
+                )
+            if number > MAX_POINTS + 1:
+                raise ValueError(f"{path} has too many points: allowed are 1 to {MAX_POINTS}")
+            numbers.extend(_number(path, number, line[k]) for k in places)
+    except csv.Error as error:
+        raise ValueError(f"{path} is no CSV file: {error}") from None
+    return np.array(numbers, float).reshape(-1, len(axes))
 
 
 def _number(path: Path, line: int, text: str) -> float:
@@ -121,17 +128,18 @@ def _from_npy(path: Path, data: bytes, axes: "Sequence[Axis]") -> "np.ndarray":
     import numpy as np
 
     try:
-        array = np.load(io.BytesIO(data), allow_pickle=False)
-    except (ValueError, OSError, EOFError, SyntaxError, TypeError, MemoryError) as error:
+        found = np.load(io.BytesIO(data), allow_pickle=False)
+    # A broken header raises errors of many types.
+    except Exception as error:
         reason = str(error).partition("\n")[0]
         raise ValueError(f"{path} is no NPY file: {reason}") from None
-    if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu":
+    if not isinstance(found, np.ndarray) or found.dtype.kind not in "fiu":
         raise ValueError(f"{path} has no array of numbers: expected is (points, {len(axes)})")
-    if array.ndim == 1 and len(axes) == 1:
-        array = array[:, None]
-    if array.ndim != 2 or array.shape[1] != len(axes):
+    if found.ndim == 1 and len(axes) == 1:
+        found = found[:, None]
+    if found.ndim != 2 or found.shape[1] != len(axes):
         names = ", ".join(axis.name for axis in axes)
         raise ValueError(
-            f"{path} has an array {array.shape}: expected is (points, {len(axes)}), for {names}"
+            f"{path} has an array {found.shape}: expected is (points, {len(axes)}), for {names}"
         )
-    return array.astype(float)
+    return found.astype(float)

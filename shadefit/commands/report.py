@@ -29,6 +29,7 @@ def report(
     from shadefit.figures import drawable, pictures, render
     from shadefit.progress import stages
     from shadefit.report.page import page
+    from shadefit.terminal import apart_from, print_lines
 
     require_writable_file(out)
     more = _more(tables or [])
@@ -43,7 +44,8 @@ def report(
             stage.advance()
         stage.show("tables")
         write_whole(out, page(drawn, more))
-    print(out)
+    with apart_from(out):
+        print_lines(out)
 
 
 def _more(names: list[str]) -> "list[Entry]":

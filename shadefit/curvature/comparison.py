@@ -1,9 +1,12 @@
 """Which curvature a skin fit should be given: each against diffusion over whole surfaces.
 
 A skin fit has the light on a cylinder that is lit across its axis. Here it is replaced by the exact
-integral, so that all of the error comes from the choice of the curvature.
+integral, so that all of the error comes from the choice of the curvature. Methods with "blurred"
+take the tensor and the drift that are smoothed by a Gaussian of `BLUR`, the others take those of
+the point.
 """
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,26 +16,42 @@ import numpy as np
 
 from integrals.skin import cylinder_scattering, sphere_scattering
 from shadefit.curvature.blocks import over_rows
-from shadefit.curvature.diffusion import NODES, diffused, patch
-from shadefit.curvature.surfaces import Ellipsoid, Torus, normals_and_tensors, random_points
+from shadefit.curvature.diffusion import NODES, blurred, diffused, patch
+from shadefit.curvature.surfaces import (
+    Ellipsoid,
+    Finger,
+    RoundedFinger,
+    Surface,
+    Torus,
+    normals_and_tensors,
+    random_points,
+)
 from shadefit.curvature.tensors import frame_tensors, frames_of
 from shading.curvature import (
     along_light,
     bending_along_light,
+    drifted,
     effective,
+    equivalent_cylinder,
     mean,
     projected_light,
     published,
 )
 from shading.skin.profiles import SKIN
 
-SURFACES: dict[str, Ellipsoid | Torus] = {
+SURFACES: dict[str, Surface] = {
     "sphere 10": Ellipsoid((10.0, 10.0, 10.0)),
     "ellipsoid 60, 7, 7": Ellipsoid((60.0, 7.0, 7.0)),
     "ellipsoid 20, 10, 7": Ellipsoid((20.0, 10.0, 7.0)),
     "ellipsoid 12, 8, 5": Ellipsoid((12.0, 8.0, 5.0)),
     "torus 15, 6": Torus(15.0, 6.0),
+    "capsule 7, 25": Finger(7.0, 25.0),
+    "rounded finger 7, 32": RoundedFinger(7.0, 32.0),
 }
+
+
+# The width σ in mm of the blur of tensors and normals, near that of red light, √1.38 mm.
+BLUR = 1.4
 
 
 def _none(tensor: jax.Array, light: jax.Array) -> jax.Array:
@@ -43,14 +62,43 @@ def _mean(tensor: jax.Array, light: jax.Array) -> jax.Array:
     return mean(tensor) + 0.0 * jnp.sum(light)
 
 
-# A method maps a tensor and a projected light to a curvature, of which the absolute value counts.
-METHODS: dict[str, Callable[[jax.Array, jax.Array], jax.Array]] = {
-    "no curvature": _none,
-    "mean": _mean,
-    "along the light": along_light,
-    "published shader": published,
-    "bending along the light": bending_along_light,
-    "effective": effective,
+def _of_curvature(method: Callable[[jax.Array, jax.Array], jax.Array]) -> Callable:
+    """Return a shader of the absolute value of the curvature of a tensor and a projected light."""
+
+    def shade(tensor, drift, light, cosine):
+        # The drift does not count, but all shaders have the same arguments.
+        return _cylinder(cosine + 0.0 * jnp.sum(drift), jnp.abs(method(tensor, light)))
+
+    return shade
+
+
+def _equivalent(tensor, drift, light, cosine):
+    """Return the light of the equivalent cylinder; a drift of zero has no effect."""
+
+    def channel(variance, index):
+        cylinder = equivalent_cylinder(tensor, light, drifted(cosine, drift, light, variance))
+        return cylinder.scale * _cylinder(cylinder.cosine, cylinder.curvature)[index]
+
+    return jax.vmap(channel)(jnp.asarray(SKIN.mean_variances), jnp.arange(SKIN.channels))
+
+
+def _cylinder(cosine: jax.Array, kappa: jax.Array) -> jax.Array:
+    return cylinder_scattering(SKIN, jnp.arccos(jnp.clip(cosine, -1, 1)), kappa)
+
+
+# A method has a shader, which returns channels of a tensor, a drift, a projected light and n·l, and
+# says whether the tensor and the drift are the blurred ones.
+METHODS: dict[str, tuple[Callable, bool]] = {
+    "no curvature": (_of_curvature(_none), False),
+    "mean": (_of_curvature(_mean), False),
+    "along the light": (_of_curvature(along_light), False),
+    "along the light, blurred": (_of_curvature(along_light), True),
+    "published shader": (_of_curvature(published), False),
+    "bending along the light": (_of_curvature(bending_along_light), False),
+    "effective": (_of_curvature(effective), False),
+    "effective, blurred": (_of_curvature(effective), True),
+    "equivalent cylinder": (_equivalent, False),
+    "equivalent cylinder, blurred, with drift": (_equivalent, True),
 }
 
 
@@ -61,24 +109,42 @@ class Lit:
     points: np.ndarray
     normals: np.ndarray
     tensors: np.ndarray
+    blurred_tensors: np.ndarray
+    drifts: np.ndarray
     frames: np.ndarray
     lights: np.ndarray
     values: np.ndarray
 
 
-def lit(surface: Ellipsoid | Torus, count: int, seed: int, nodes: int = NODES) -> Lit:
+def lit(surface: Surface, count: int, seed: int, nodes: int = NODES) -> Lit:
     """Return random points with random lights, both uniform, and the light diffused there."""
     points = random_points(surface, count, seed)
     lights = np.random.default_rng(seed + 1).normal(size=(count, 3))
     lights /= np.linalg.norm(lights, axis=1)[:, None]
+    return lit_at(surface, points, lights, nodes)
+
+
+def lit_at(surface: Surface, points: np.ndarray, lights: np.ndarray, nodes: int = NODES) -> Lit:
+    """Return points (n, 3) of a surface with lights (n, 3), and the light diffused there."""
     normals, matrices = normals_and_tensors(surface, points)
     frames = frames_of(normals)
-    values = [
-        diffused(patch(surface, point, nodes), point, light, SKIN)
-        for point, light in zip(points, lights, strict=True)
-    ]
-    tensors = frame_tensors(matrices, frames)
-    return Lit(points, normals, tensors, frames, lights, np.array(values))
+    values, tensors, drifts = [], [], []
+    for point, light, frame in zip(points, lights, frames, strict=True):
+        whole = patch(surface, point, nodes)
+        values.append(diffused(whole, point, light, SKIN))
+        tensor, drift = blurred(surface, whole, point, frame, BLUR)
+        tensors.append(tensor)
+        drifts.append(drift)
+    return Lit(
+        points,
+        normals,
+        frame_tensors(matrices, frames),
+        np.array(tensors),
+        np.array(drifts),
+        frames,
+        lights,
+        np.array(values),
+    )
 
 
 def errors(seen: Lit) -> dict[str, np.ndarray]:
@@ -87,8 +153,11 @@ def errors(seen: Lit) -> dict[str, np.ndarray]:
 
 
 def shaded(name: str, seen: Lit) -> np.ndarray:
-    """Return the light (n, channels) of a cylinder with the curvature of a method."""
-    return over_rows(_SHADERS[name], seen.tensors, seen.frames, seen.normals, seen.lights)[0]
+    """Return the light (n, channels) of a cylinder by a method."""
+    shader, blur = METHODS[name]
+    tensors = seen.blurred_tensors if blur else seen.tensors
+    drifts = seen.drifts if blur else np.zeros_like(seen.drifts)
+    return over_rows(_row(shader), tensors, drifts, seen.frames, seen.normals, seen.lights)[0]
 
 
 def on_sphere(radius: float, seen: Lit) -> np.ndarray:
@@ -101,13 +170,9 @@ def _on_sphere(cosine: jax.Array, kappa: jax.Array) -> tuple[jax.Array]:
     return (sphere_scattering(SKIN, jnp.arccos(jnp.clip(cosine, -1, 1)), kappa),)
 
 
-def _shader(method: Callable) -> Callable:
-    def row(tensor, frame, normal, light):
-        kappa = jnp.abs(method(tensor, projected_light(frame, light)))
-        theta = jnp.arccos(jnp.clip(normal @ light, -1, 1))
-        return (cylinder_scattering(SKIN, theta, kappa),)
+@functools.cache
+def _row(shader: Callable) -> Callable:
+    def row(tensor, drift, frame, normal, light):
+        return (shader(tensor, drift, projected_light(frame, light), normal @ light),)
 
     return row
-
-
-_SHADERS = {name: _shader(method) for name, method in METHODS.items()}

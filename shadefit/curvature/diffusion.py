@@ -4,7 +4,8 @@ The light at a point is the mean of max(0, n·l) over the whole surface, weighte
 straight distance, without shadows, as on ring and sphere. The surface is mapped so that the point
 is the origin of the map, and panels of Gauss–Legendre nodes shrink towards it, down to the
 narrowest Gaussian. An ellipsoid is mapped by the polar coordinates of the sphere that it is
-stretched from, a torus by its two angles.
+stretched from, a torus by its two angles, and a finger by its meridian and the angle around it. The
+capsule is mapped in three smooth pieces.
 """
 
 import itertools
@@ -14,7 +15,16 @@ import numpy as np
 from jaxtyping import Float
 
 from integrals.rules.interval import gauss_legendre
-from shadefit.curvature.surfaces import Ellipsoid, Torus, normals_and_tensors, torus_points
+from shadefit.curvature.surfaces import (
+    Ellipsoid,
+    Finger,
+    RoundedFinger,
+    Surface,
+    Torus,
+    around_axis,
+    normals_and_tensors,
+    torus_points,
+)
 from shading.skin.profiles import GaussianProfile
 
 PANELS, NODES, AROUND = 12, 8, 384
@@ -29,7 +39,7 @@ class Patch:
     areas: Float[np.ndarray, " n"]
 
 
-def patch(surface: Ellipsoid | Torus, point: np.ndarray, nodes: int = NODES) -> Patch:
+def patch(surface: Surface, point: np.ndarray, nodes: int = NODES) -> Patch:
     """Return the nodes of a surface that are graded towards a point on it.
 
     `nodes` are those of one of the panels; the others grow in proportion.
@@ -37,6 +47,8 @@ def patch(surface: Ellipsoid | Torus, point: np.ndarray, nodes: int = NODES) -> 
     around = AROUND * nodes // NODES
     if isinstance(surface, Torus):
         return _torus_patch(surface, point, nodes)
+    if isinstance(surface, Finger | RoundedFinger):
+        return _finger_patch(surface, point, nodes)
     return _ellipsoid_patch(surface, point, nodes, around)
 
 
@@ -50,6 +62,30 @@ def diffused(
     lit = np.maximum(seen.normals @ light, 0.0)
     weights = np.array(profile.weights)
     return (weights @ (falloff @ lit)) / (weights @ falloff.sum(axis=1))
+
+
+def blurred(
+    surface: Surface, seen: Patch, point: np.ndarray, frame: np.ndarray, width: float
+) -> tuple[Float[np.ndarray, " 3"], Float[np.ndarray, " 2"]]:
+    """Return the tensor (3,) and the drift (2,) at a point, blurred by a Gaussian.
+
+    `width` is its σ in mm. Tensors are carried by the shortest rotation, and do not count if
+    normals are more than 90° apart, as in `smoothing`. The drift is the part of the mean normal
+    along the surface, divided by σ². Both are in `frame` (2, 3).
+    """
+    distance2 = np.sum((seen.points - point) ** 2, axis=1)
+    normal = np.cross(*frame)
+    near = (distance2 < (4 * width) ** 2) & (seen.normals @ normal > 0)
+    places, normals = seen.points[near], seen.normals[near]
+    weight = np.exp(-distance2[near] / (2 * width**2)) * seen.areas[near]
+    weight /= weight.sum()
+    _, matrices = normals_and_tensors(surface, places)
+    # f·R v of the shortest rotation R to n, for v orthogonal to the other normal m, is
+    # (f − n (f·m)/(1 + n·m))·v.
+    along = (normals @ frame.T) / (1 + normals @ normal)[:, None]
+    pulled = frame - along[:, :, None] * normal
+    tensor = np.einsum("n,nai,nij,nbj->ab", weight, pulled, matrices, pulled, optimize=True)
+    return tensor[[0, 0, 1], [0, 1, 1]], frame @ (weight @ normals) / width**2
 
 
 def _graded(nodes: int, end: float) -> tuple[np.ndarray, np.ndarray]:
@@ -95,3 +131,22 @@ def _torus_patch(surface: Torus, point: np.ndarray, nodes: int) -> Patch:
     out = surface.major + surface.minor * np.cos(v.ravel())
     areas = (step[:, None] * step).ravel() * out * surface.minor
     return Patch(points, normals_and_tensors(surface, points)[0], areas)
+
+
+def _finger_patch(surface: Finger | RoundedFinger, point: np.ndarray, nodes: int) -> Patch:
+    distance, azimuth = float(np.hypot(point[1], point[2])), np.arctan2(point[2], point[1])
+    half, weight = _graded(nodes, np.pi)
+    turn = azimuth + np.concatenate([-half[::-1], half])
+    step = np.concatenate([weight[::-1], weight])
+    parts, areas = [], []
+    for piece in surface.pieces():
+        nearest = piece.nearest(float(point[0]), distance)
+        before, weight_before = _graded(nodes, nearest - piece.start)
+        after, weight_after = _graded(nodes, piece.end - nearest)
+        along = nearest + np.concatenate([-before[::-1], after])
+        x, ring, stretch = piece.at(along)
+        area = np.concatenate([weight_before[::-1], weight_after]) * ring * stretch
+        parts.append(around_axis(x[:, None], ring[:, None], turn).reshape(-1, 3))
+        areas.append((area[:, None] * step).ravel())
+    points = np.concatenate(parts)
+    return Patch(points, normals_and_tensors(surface, points)[0], np.concatenate(areas))

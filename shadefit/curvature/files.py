@@ -1,10 +1,12 @@
 """Mesh files: OBJ, PLY and glTF are read through trimesh, and PLY with curvature is written."""
 
+import io
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from coefficients.input_files import read_bounded
 from shadefit.curvature.meshes import UNITS, Mesh, mesh
 from shadefit.curvature.tensors import Curvature
 from shadefit.curvature.vertex_bytes import to_bytes
@@ -25,10 +27,7 @@ def read_mesh(path: Path, unit: str) -> Mesh:
         raise ValueError(f"unit {unit!r} is not known: allowed are {', '.join(UNITS)}")
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: allowed are files that end with {', '.join(SUFFIXES)}")
-    if not path.is_file():
-        raise ValueError(f"{path} is no file")
-    if path.stat().st_size > LARGEST_FILE:
-        raise ValueError(f"{path} has {path.stat().st_size} bytes: allowed are {LARGEST_FILE}")
+    data = io.BytesIO(read_bounded(path, LARGEST_FILE))
     try:
         import trimesh  # noqa: PLC0415
     except ImportError:
@@ -36,15 +35,14 @@ def read_mesh(path: Path, unit: str) -> Mesh:
             "meshes are read by trimesh, which is not installed: pip install 'shadefit[meshes]'"
         ) from None
     try:
-        with path.open("rb") as file:
-            scene = trimesh.load_scene(
-                file,
-                file_type=path.suffix.lower()[1:],
-                resolver=_beside(path.parent),
-                process=False,
-                skip_materials=True,
-            )
-            parts = list(_parts(scene))
+        scene = trimesh.load_scene(
+            data,
+            file_type=path.suffix.lower()[1:],
+            resolver=_beside(path.parent),
+            process=False,
+            skip_materials=True,
+        )
+        parts = list(_parts(scene))
     # A damaged file makes trimesh raise errors of any type.
     except Exception as error:
         text = " ".join(str(error).split()) or type(error).__name__
@@ -64,19 +62,25 @@ def read_mesh(path: Path, unit: str) -> Mesh:
         raise ValueError(f"{path}: {error}") from None
 
 
-def ply_bytes(shape: Mesh, found: Curvature, largest: float = RANGE) -> bytes:
+def ply_bytes(
+    shape: Mesh, found: Curvature, largest: float = RANGE, drift: np.ndarray | None = None
+) -> bytes:
     """Return a binary PLY file in mm of a mesh with its curvature.
 
     A vertex has x y z, nx ny nz, the tangent tx ty tz, the tensor ii_tt ii_tb ii_bb in 1/mm, and
     the signed bytes packed_tt packed_tb packed_bb packed_mean of the range ±`largest`. The
-    bitangent is n × t.
+    bitangent is n × t. With a `drift` (n, 2) of the normal, drift_t drift_b in 1/mm² follow the
+    tensor.
     """
     names = ["x", "y", "z", "nx", "ny", "nz", "tx", "ty", "tz", "ii_tt", "ii_tb", "ii_bb"]
+    columns = [shape.vertices, shape.normals, found.frames[:, 0], found.tensors]
+    if drift is not None:
+        names += ["drift_t", "drift_b"]
+        columns.append(drift)
     packed = ["packed_tt", "packed_tb", "packed_bb", "packed_mean"]
     fields = [*((name, "<f4") for name in names), *((name, "i1") for name in packed)]
     vertices = np.empty(len(shape.vertices), fields)
-    columns = np.hstack([shape.vertices, shape.normals, found.frames[:, 0], found.tensors])
-    for name, column in zip(names, columns.T, strict=True):
+    for name, column in zip(names, np.hstack(columns).T, strict=True):
         vertices[name] = column
     for name, column in zip(packed, to_bytes(found.tensors, largest).T, strict=True):
         vertices[name] = column
@@ -128,11 +132,9 @@ def _beside(folder: Path):
         def get(self, key: str) -> bytes:
             name = key
             found = folder / name
-            if Path(name).name != name or not found.is_file() or found.is_symlink():
+            if Path(name).name != name or found.is_symlink():
                 raise ValueError(f"it refers to {name!r}: allowed are files beside it")
-            if found.stat().st_size > LARGEST_FILE:
-                raise ValueError(f"{name!r} is larger than {LARGEST_FILE} bytes")
-            return found.read_bytes()
+            return read_bounded(found, LARGEST_FILE)
 
         def keys(self) -> list[str]:
             return []

@@ -1,7 +1,6 @@
 """Images from PNG, EXR and DDS files."""
 
 import io
-import stat
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +8,13 @@ from PIL.DdsImagePlugin import DdsImageFile
 from PIL.ImageFile import ImageFile
 from PIL.PngImagePlugin import PngImageFile
 
+from coefficients.input_files import read_bounded
 from shadefit.images.colour_space import SRGB, require_colour_space
 from shadefit.images.image import MAX_BYTES, MAX_EDGE, Image, image_of, require_size
 from shadefit.images.optional_libraries import optional_library
 
+# The most bytes of a pixel, four floats, and those of all other content of a file
+_WIDEST, _OTHER_BYTES = 17, 1 << 24
 FORMATS = (".png", ".exr", ".dds")
 # Channels of an EXR file in the order of the image's channels
 _LAYOUTS = (("R", "G", "B", "A"), ("R", "G", "B"), ("R", "G"), ("Y", "A"), ("R",), ("Y",))
@@ -36,7 +38,8 @@ def read_image(path: str | Path, colour_space: str | None, max_edge: int = MAX_E
     colour_space = require_colour_space(colour_space, str(path))
     if suffix == ".exr" and colour_space == SRGB:
         raise ValueError(f"{path}: EXR files hold linear values: allowed is linear")
-    data = _bytes_of(path)
+    # Compression makes no file of pixels much larger than they are.
+    data = read_bounded(path, min(MAX_BYTES, max_edge * max_edge * _WIDEST + _OTHER_BYTES))
     read = {".png": _read_png, ".exr": _read_exr, ".dds": _read_dds}[suffix]
     try:
         pixels = read(data, str(path), max_edge)
@@ -47,19 +50,6 @@ def read_image(path: str | Path, colour_space: str | None, max_edge: int = MAX_E
 
 class _RefusedError(Exception):
     """What is wrong with a file."""
-
-
-def _bytes_of(path: Path) -> bytes:
-    """Return the bytes of a regular file. Other files, such as pipes and devices, may not end."""
-    try:
-        found = path.stat()
-        if not stat.S_ISREG(found.st_mode):
-            raise ValueError(f"{path}: it is no regular file")
-        if found.st_size > MAX_BYTES:
-            raise ValueError(f"{path}: {found.st_size} bytes: allowed are {MAX_BYTES}")
-        return path.read_bytes()
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror}") from None
 
 
 def _opened(kind: type[ImageFile], data: bytes, name: str, max_edge: int) -> ImageFile:

@@ -1,5 +1,6 @@
 """The directions in which the fibres of an image lean."""
 
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,7 @@ def azimuths(fibers: str, hits: Hits) -> np.ndarray:
         return np.zeros(len(hits.position))
     if fibers == CRUSHED:
         return _crushed(hits.position)
-    return _angles_from_map(_read_map(Path(fibers)), hits.uv)
+    return _angles_from_map(_map_of(Path(fibers)), hits.uv)
 
 
 def _crushed(position: np.ndarray) -> np.ndarray:
@@ -44,8 +45,20 @@ def _crushed(position: np.ndarray) -> np.ndarray:
     return _TURN * np.tanh(1.5 * (waves @ weights))
 
 
-def _read_map(path: Path) -> np.ndarray:
-    """Return red and green (height, width, 2) of a PNG file, mapped to −1 … 1."""
+def _map_of(path: Path) -> np.ndarray:
+    """Return red and green (height, width, 2) of a PNG file, read once unless it changes."""
+    try:
+        found = path.stat()
+        state = (found.st_ino, found.st_size, found.st_mtime_ns)
+    except OSError:
+        # Reading says what is wrong.
+        state = ()
+    return _read_map(path, state)
+
+
+@lru_cache(maxsize=1)
+def _read_map(path: Path, state: tuple[int, ...]) -> np.ndarray:
+    del state
     from shadefit.images import read_image  # noqa: PLC0415
     from shadefit.images.colour_space import LINEAR  # noqa: PLC0415
 
@@ -55,11 +68,13 @@ def _read_map(path: Path) -> np.ndarray:
         raise ValueError(f"fibers: {error}; allowed: {EVEN}, {CRUSHED}, or a PNG file") from None
     if pixels.shape[2] < 2:
         raise ValueError(f"fibers: {path} has no red and green channels")
-    return 2 * pixels[..., :2].astype(float) - 1
+    return np.ascontiguousarray(pixels[..., :2])
 
 
 def _angles_from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
     """Return the angles at `uv` (n, 2) by bilinear interpolation of the map, which repeats.
+
+    The values 0 … 1 of the map stand for −1 … 1.
 
     Directions are interpolated and not angles, because angles jump from π to −π.
     """
@@ -70,5 +85,6 @@ def _angles_from_map(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
     for i in (0, 1):
         for j in (0, 1):
             weight = np.abs(1 - i - (x - left)) * np.abs(1 - j - (y - top))
-            total += weight[:, None] * pixels[(top + j) % height, (left + i) % width]
+            found = pixels[(top + j) % height, (left + i) % width].astype(float)
+            total += weight[:, None] * (2 * found - 1)
     return np.arctan2(total[:, 1], total[:, 0])

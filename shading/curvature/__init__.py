@@ -4,9 +4,13 @@ A curvature tensor II is the second fundamental form in a tangent frame (t, b) o
 given by three numbers (II_tt, II_tb, II_bb) in 1/mm. It is positive where the surface is convex and
 the normal points outwards, so a sphere of radius r has (1/r, 0, 1/r). `triangle` has the tensor of
 a triangle, `frames` carries tensors to other planes, `from_light` reduces a tensor to the one
-curvature that a skin fit takes, and `packing` stores a tensor in four bytes.
+curvature that a skin fit takes, `equivalent` has the cylinder whose light is nearer still, and
+`packing` stores a tensor in four bytes.
 """
 
+from shading.curvature.equivalent import EquivalentCylinder as EquivalentCylinder
+from shading.curvature.equivalent import drifted as drifted
+from shading.curvature.equivalent import equivalent_cylinder as equivalent_cylinder
 from shading.curvature.frames import carried as carried
 from shading.curvature.frames import expressed as expressed
 from shading.curvature.frames import rotated as rotated

@@ -47,6 +47,11 @@ class GaussianProfile:
         """The number of channels."""
         return len(self.weights)
 
+    @property
+    def mean_variances(self) -> tuple[float, ...]:
+        """The mean variance Σ w v of each channel in mm²: half the mean squared distance."""
+        return tuple(float(np.dot(row, self.variances)) for row in self.weights)
+
     def channel(self, index: int) -> "GaussianProfile":
         """Return one channel, without the Gaussians that have no weight in it."""
         kept = [(v, w) for v, w in zip(self.variances, self.weights[index], strict=True) if w > 0]

@@ -11,7 +11,8 @@ from coefficients.catalogue import resolve
 from coefficients.code_options import CodeOptions
 from coefficients.exported_code import exported_values, source_file, trial_of
 from fitting.points.grids import sobol_points
-from programs import Parameter, function, toolchain
+from programs import Parameter, function, toolchain, write_source
+from programs.printing.printer import Section, write_sections
 from programs.toolchains.process import execute, missing_command
 
 NAMES = ("best/ps-11", "best/g-9", "q")
@@ -91,3 +92,41 @@ def test_a_bundle_has_its_own_language():
     for key, precision in (("glsl", None), ("hlsl", "half")):
         with pytest.raises(ValueError, match="allowed is hlsl in float"):
             source_file(resolve("q"), key, precision, options=CodeOptions(bundle="unity"))
+
+
+# The names that bundles give to local variables and results, or call, and a problem that has them
+TAKEN = ("x", "value", "column", "y", "shade", "top", "Out", "Value")
+
+
+@functools.cache
+def with_taken_names(kind):
+    bundle = BUNDLES[kind]
+    called = function("Sum", [Parameter(name, (0.0, 1.0)) for name in TAKEN], lambda *x: sum(x))
+    return write_sections(
+        [Section((called,), {})], bundle.language, ending=bundle.code([(called,)])
+    )
+
+
+def test_variables_of_a_bundle_hide_no_argument(tmp_path):
+    shadertoy = with_taken_names("shadertoy")
+    assert "value_2 = Sum(x, value, column, y, shade, top, Out, Value);" in shadertoy
+    assert "highp float x = mix(0.0, 1.0, x_2);" in shadertoy
+    assert "highp float Value = mix(0.0, 1.0, y_2);" in shadertoy
+    isf = with_taken_names("isf")
+    assert "float shade_2 = isf_FragNormCoord.y * top_2 < value_2 ? 1.0 : 0.2;" in isf
+    assert "out half Out_2)\n" in with_taken_names("unity")
+    assert "float Value_2 = 0.0)\n" in with_taken_names("blender-osl")
+    if missing_command("glslangValidator", "glslang-tools") is None:
+        before = "#version 300 es\nprecision highp float;\nuniform vec3 iResolution;\n"
+        after = "out vec4 color;\nvoid main() { mainImage(color, gl_FragCoord.xy); }\n"
+        (tmp_path / "image.frag").write_text(before + shadertoy + after)
+        execute(["glslangValidator", "image.frag"], failure="image.frag", folder=tmp_path)
+
+
+def test_an_argument_has_no_name_that_a_bundle_calls():
+    called = function("Half", [Parameter("mix", (0.0, 1.0))], lambda x: 0.5 * x)
+    assert "float Half(highp float mix)" in write_source(called, "glsl-es")
+    with pytest.raises(ValueError, match="name 'mix' cannot be used in GLSL ES; allowed: "):
+        write_sections(
+            [Section((called,), {})], "glsl-es", ending=BUNDLES["shadertoy"].code([(called,)])
+        )

@@ -116,7 +116,7 @@ def test_bad_tables_are_refused_with_one_line(table, tmp_path, change, said):
 
 
 def test_no_table_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="no such file"):
+    with pytest.raises(ValueError, match="No such file"):
         read_ndf(tmp_path / "none.json")
     (tmp_path / "text.json").write_text("[" * 100_000)
     with pytest.raises(ValueError, match=r"text\.json"):

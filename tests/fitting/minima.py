@@ -7,7 +7,9 @@ from jax import Array
 
 from fitting import Form, form_values
 from fitting.points.grids import Grid
+from fitting.solvers import quotients, separable
 from fitting.solvers.least_squares import solve_nonlinear
+from integrals.compilation import jit_for_few_calls
 
 
 def misfit(form: Form, grid: Grid, coefficients, values) -> np.ndarray:
@@ -39,3 +41,20 @@ def worst_of(count: int, size: float):
         return ends[jnp.argmax(jnp.nan_to_num(norms, nan=jnp.inf))]
 
     return solve
+
+
+def replace_solver(
+    monkeypatch, module, solve, compiled: str, static: tuple[int, ...] = (0,)
+) -> None:
+    """Let a module's fits be solved by `solve`. `compiled` is its function that holds the solver.
+
+    It is compiled anew, since JAX keeps what it compiled with the module's own solver. Another
+    function stands for it, or JAX would know it again.
+    """
+    whole = getattr(module, compiled).__wrapped__
+    monkeypatch.setattr(quotients if module is separable else module, "solve_nonlinear", solve)
+
+    def another(*arguments):
+        return whole(*arguments)
+
+    monkeypatch.setattr(module, compiled, jit_for_few_calls(another, static=static))

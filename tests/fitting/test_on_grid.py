@@ -12,7 +12,7 @@ from fitting.solvers import on_grid
 from fitting.solvers.least_squares import solve_nonlinear_jaxopt
 from fitting.solvers.on_grid import OnGrid, solve_in_general
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
-from tests.fitting.minima import misfit, possible_gain, worst_of
+from tests.fitting.minima import misfit, possible_gain, replace_solver, worst_of
 from tests.fitting.toys import PLANE, QUOTIENT, TOY, toy_form
 
 FORMS = {form.name: form for form in (QUADRATIC_Q, RATIONAL_G, PLANE, QUOTIENT)}
@@ -70,7 +70,7 @@ def test_the_second_solver_ends_in_the_same_minimum(monkeypatch, name):
     form, grid, exact = problem(name)
     first, solver = fitted(name)
     assert solver == "Levenberg–Marquardt (optimistix)"
-    monkeypatch.setattr(on_grid, "solve_nonlinear", solve_nonlinear_jaxopt)
+    replace_solver(monkeypatch, on_grid, solve_nonlinear_jaxopt, "_fit")
     second, _ = solve_in_general(form, grid, exact)
     assert not np.array_equal(first, second)
     assert norm(name, second) == pytest.approx(norm(name, first), rel=1e-6)
@@ -82,7 +82,7 @@ def test_the_second_solver_ends_in_the_same_minimum(monkeypatch, name):
 
 @pytest.mark.parametrize("name", ["quotient", pytest.param("rational-g", marks=pytest.mark.slow)])
 def test_the_worst_of_several_starts_is_as_good(monkeypatch, name):
-    monkeypatch.setattr(on_grid, "solve_nonlinear", worst_of(6, 0.1))
+    replace_solver(monkeypatch, on_grid, worst_of(6, 0.1), "_fit")
     found, _ = solve_in_general(*problem(name))
     assert norm(name, found) == pytest.approx(norm(name, fitted(name)[0]), rel=1e-6)
 

@@ -19,7 +19,7 @@ from fitting.solvers.quotients import (
     penalty_points,
 )
 from quantities.fuzz.supplement import R_QUOTIENT, RATIONAL_R
-from tests.fitting.minima import misfit, possible_gain, worst_of
+from tests.fitting.minima import misfit, possible_gain, replace_solver, worst_of
 from tests.fitting.toys import AXES
 
 # The shape
@@ -96,7 +96,7 @@ def test_no_direction_in_the_coefficients_lowers_the_error():
 @pytest.mark.slow
 def test_the_second_solver_ends_in_the_same_minimum(monkeypatch):
     first = fitted()
-    monkeypatch.setattr(quotients, "solve_nonlinear", solve_nonlinear_jaxopt)
+    replace_solver(monkeypatch, quotients, solve_nonlinear_jaxopt, "_fit_quotient")
     second = fit_quotient_on_grid(R_QUOTIENT, GRID, exact())
     assert not np.array_equal(first, second)
     assert norm(second) == pytest.approx(norm(first), rel=1e-6)
@@ -109,7 +109,7 @@ def test_the_second_solver_ends_in_the_same_minimum(monkeypatch):
 
 @pytest.mark.slow
 def test_the_worst_of_several_starts_is_as_good(monkeypatch):
-    monkeypatch.setattr(quotients, "solve_nonlinear", worst_of(6, 0.3))
+    replace_solver(monkeypatch, quotients, worst_of(6, 0.3), "_fit_quotient")
     found = fit_quotient_on_grid(R_QUOTIENT, GRID, exact())
     assert norm(found) == pytest.approx(norm(fitted()), rel=1e-6)
 
@@ -137,7 +137,7 @@ def test_rows_are_recovered_together_from_their_own_values():
 
 def test_a_start_is_a_polynomial_with_denominators_of_one(monkeypatch):
     least = norm(fitted())
-    monkeypatch.setattr(quotients, "solve_nonlinear", lambda residual, start, steps: start)
+    replace_solver(monkeypatch, quotients, lambda residual, start, steps: start, "_fit_quotient")
     found = fit_quotient_on_grid(R_QUOTIENT, GRID, exact())
     np.testing.assert_array_equal(found[14:], 0)
     assert 0 < least < norm(found) < 0.1

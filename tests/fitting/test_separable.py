@@ -4,18 +4,18 @@ import functools
 from dataclasses import replace
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from fitting import form_values
 from fitting.points.grids import Grid, trapezoid_grid
-from fitting.solvers import quotients
+from fitting.solvers import node_fits, separable
+from fitting.solvers.separable import Separable
 from integrals import PS
 from integrals.fuzz.ps import MEASURES
 from quantities.fuzz.lights import light_directions
 from quantities.fuzz.supplement import LIGHTS_PER_ANGLE, PS_ROWS, RATIONAL_PS
-from tests.fitting.minima import worst_of
+from tests.fitting.minima import replace_solver, worst_of
 
 GRID = trapezoid_grid(RATIONAL_PS.axes[:2], 9)
 COUNT = 12
@@ -172,24 +172,42 @@ def rms() -> float:
 @pytest.mark.slow
 def test_all_together_come_close_to_the_best_of_every_node_and_polynomials_do_not(monkeypatch):
     assert limit() < rms() < 1.002 * limit()
-    monkeypatch.setattr(quotients, "solve_nonlinear", lambda residual, start, steps: start)
+    replace_solver(
+        monkeypatch, separable, lambda residual, start, steps: start, "_fit_jointly", (0, 1)
+    )
     assert rms() > 1.01 * limit()
 
 
 @pytest.mark.slow
 def test_the_worst_of_several_starts_comes_as_close(monkeypatch):
-    monkeypatch.setattr(quotients, "solve_nonlinear", worst_of(4, 0.1))
+    replace_solver(monkeypatch, separable, worst_of(4, 0.1), "_fit_jointly", (0, 1))
     assert rms() < 1.002 * limit()
 
 
-@pytest.mark.parametrize(("count", "most", "kept"), [(9, 17, 9), (65, 17, 17), (34, 17, 12)])
-def test_a_joint_fit_skips_nodes_of_a_fine_grid_but_no_ends(count, most, kept):
-    from fitting.solvers.separable import NodeFits, _thinned  # noqa: PLC0415
+@pytest.mark.parametrize(("count", "kept"), [(9, 9), (17, 17), (34, 17), (1025, 17)])
+def test_a_joint_fit_uses_few_nodes_of_a_fine_grid(monkeypatch, count, kept):
+    grids = []
 
-    grid = trapezoid_grid(RATIONAL_PS.axes[:2], count)
-    results = jnp.asarray(grid.points.reshape(count, count, 2))
-    whole = NodeFits(results, jnp.asarray(grid.nodes[1]), results[..., 0])
-    thin, some = _thinned(grid, whole, most)
-    assert len(thin.nodes[0]) == kept
-    np.testing.assert_allclose(np.reshape(some.optimum, (-1, 2)), thin.points, rtol=1e-14)
-    np.testing.assert_allclose(some.factors, thin.nodes[1], rtol=1e-14)
+    def seen(self, form, grid, measure):
+        grids.append(grid)
+        raise StopIteration
+
+    monkeypatch.setattr(Separable, "node_fits", seen)
+    with pytest.raises(StopIteration):
+        solver(COUNT).fit(RATIONAL_PS, count, "uniform", lambda _: None)
+    assert [len(nodes) for nodes in grids[0].nodes] == [kept, kept]
+    assert grids[0].axes == RATIONAL_PS.axes[:2]
+
+
+def test_a_grid_of_several_blocks_gives_what_its_nodes_give_alone(monkeypatch):
+    whole = fits()
+    results = np.random.default_rng(3).normal(size=whole.optimum.shape)
+    nodes = solver(COUNT)._nodes(RATIONAL_PS, GRID, "uniform")
+    errors = nodes.errors(results)
+    monkeypatch.setattr(node_fits, "BLOCK", (5, 4))
+    blocks, other = nodes.best(), nodes.errors(results)
+    np.testing.assert_allclose(blocks.optimum, whole.optimum, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(blocks.factors, whole.factors, rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(other.squares, errors.squares, rtol=1e-12)
+    assert other.largest == pytest.approx(errors.largest, rel=1e-12)
+    np.testing.assert_array_equal(other.where, errors.where)

@@ -1,11 +1,13 @@
 """Data as a reference: what is read, what is refused, which rows are fitted and which judge."""
 
 import io
+import os
 import struct
 
 import numpy as np
 import pytest
 
+from integrals import data
 from integrals.data import PROBLEM_FOLDER, column_names, samples, table
 from integrals.reference import Axis
 from integrals.reference_of_source import make_reference
@@ -70,6 +72,7 @@ def test_a_file_beside_the_problem_file_is_found(file, monkeypatch):
         ("a,b\n1,two\n", "b of row 1 is nan: allowed is a finite number"),
         ("a,b\n1,2\n1,inf\n", "b of row 2 is inf"),
         (b"a,b\n\xff,1\n", "is no UTF-8 text"),
+        ("a,b\n1," + 200_000 * "2", "data.csv is no CSV file: field larger than field limit"),
     ],
 )
 def test_a_wrong_csv_is_refused_in_one_line(tmp_path, text, message):
@@ -104,8 +107,33 @@ def test_a_hostile_npy_is_refused_in_one_line(tmp_path, case):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["none.csv", "data.txt", "folder.csv"])
+def test_an_archive_that_is_damaged_or_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "data.npz"
+    np.savez_compressed(path, a=np.zeros(4096), b=np.zeros(4096))
+    whole = path.read_bytes()
+    # The bit of a zip file that says that it is encrypted, and a compression that nobody knows
+    encrypted, unknown = bytearray(whole), bytearray(whole)
+    for start in range(len(whole)):
+        if whole[start : start + 4] == b"PK\x01\x02":
+            encrypted[start + 8] |= 1
+            unknown[start + 10] = 77
+    for content in (encrypted, unknown, whole[:90], whole[:60] + b"?" + whole[61:]):
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=r"data\.npz is no NP[YZ]"):
+            table(path, ["a"], "b")
+    path.write_bytes(whole)
+    monkeypatch.setattr(data, "MAX_BYTES", 60_000)
+    with pytest.raises(ValueError, match=r"data\.npz unpacks to more than"):
+        table(path, ["a"], "b")
+    monkeypatch.setattr(data, "MAX_BYTES", len(whole) - 1)
+    with pytest.raises(ValueError, match=r"data\.npz is larger than"):
+        table(path, ["a"], "b")
+
+
+@pytest.mark.parametrize("name", ["none.csv", "data.txt", "folder.csv", "pipe.csv", "zero.csv"])
 def test_what_is_no_file_of_data_is_refused(tmp_path, name):
+    os.mkfifo(tmp_path / "pipe.csv")
+    (tmp_path / "zero.csv").symlink_to("/dev/zero")
     (tmp_path / "data.txt").write_text(TEXT)
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(ValueError, match=r"no such file|is no data: allowed are files \.csv"):

@@ -12,6 +12,7 @@ from integrals import PS
 from shading.fuzz.lit_cone import (
     FLOAT32_STEPS,
     FLOAT64_STEPS,
+    quick_fraction_at,
     scattered_fraction,
 )
 from tests.batches import batched
@@ -53,6 +54,13 @@ def test_closed_form_is_within_its_stated_error(least_alpha):
     value, error = closed_form()(*points)
     np.testing.assert_array_equal(error, 4 * EPS / points[0])
     assert np.all(distance(value, exact(1, 300, least_alpha)) <= error)
+
+
+@pytest.mark.parametrize("least_alpha", [0.15, 0.02, 1e-3, 1e-9])
+def test_the_quick_version_is_within_the_error_stated_for_the_closed_form(least_alpha):
+    points = awkward_points(1, 300, least_alpha)
+    value = batched(quick_fraction_at, 256)(*points)
+    assert np.all(distance(value, exact(1, 300, least_alpha)) <= 4 * EPS / points[0])
 
 
 def test_rounded_cosines_alone_are_not_precise_enough():

@@ -1,11 +1,14 @@
 """Throughput: the two sides compute the same, and failures are errors of one line."""
 
 import os
+import re
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
 
+from programs import write_source
 from programs.toolchains import throughput as timing
 from programs.toolchains.throughput import measure_throughput
 from tests.programs.toys import ARRAYS, SCALAR, UNIT
@@ -87,3 +90,25 @@ def test_random_inputs_fill_the_domain():
     assert inputs.shape == (3, 1000) and inputs.dtype == np.float32
     assert inputs.min() >= UNIT[0] and inputs.max() <= UNIT[1]
     assert inputs.min() < 0.26 and inputs.max() > 0.99
+
+
+@pytest.mark.parametrize(("key", "compiler"), [("c", "gcc"), ("cpp", "g++")])
+def test_loops_over_an_exported_function_are_vectorised_in_a_library_too(tmp_path, key, compiler):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"{compiler} is not on PATH")
+    loop = (
+        "void all(int n, const float *__restrict a, const float *__restrict d, float *__restrict o)"
+        "{ for (int i = 0; i < n; ++i) o[i] = Rational(a[i], d[i]); }\n"
+    )
+
+    def vectorised(source):
+        path = tmp_path / f"loop.{key}"
+        path.write_text(source + loop)
+        command = [compiler, *timing.FLAGS, "-fPIC", "-fopt-info-vec", "-c", path, "-o", "loop.o"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+        return "loop vectorized" in done.stderr
+
+    source = write_source(SCALAR, key)
+    assert vectorised(source)
+    # A library must not inline an external function, because another library may replace it.
+    assert not vectorised(re.sub(r"^(static )?inline ", "", source, flags=re.MULTILINE))

@@ -238,6 +238,7 @@ def test_many_points_are_printed_as_json(capsys, tmp_path):
         ("p.csv", b"density,cos_v\n1,1\n1,2\n", "line 3: cos_v = 2 is outside its domain [0, 1]"),
         ("p.csv", b"\xff\xfe\x00", "is no CSV file"),
         ("p.csv", b'density,cos_v\n"1,1\n', "is no CSV file"),
+        ("p.csv", b"density,cos_v\n1," + 200_000 * b"1", "is no CSV file: field larger than"),
         ("p.npy", b"", "is no NPY file"),
         ("p.npy", b"\x93NUMPY\x01\x00\x10\x00{'descr': 1}    ", "is no NPY file"),
         ("p.txt", b"", "allowed are files that end in .csv or .npy"),

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from shadefit.cli import main
 from shadefit.curvature import curvature
@@ -54,6 +55,42 @@ def test_smoothing_keeps_a_sphere_and_clamping_removes_concavity():
         smoothed(made, found, [0.0])
 
 
+def test_drift_is_written_after_the_tensor(sphere, tmp_path, capsys):
+    out = tmp_path / "out.ply"
+    assert run(sphere, "--unit", "mm", "-o", out, "--drift", "1.4", "--json") == 0
+    assert CHECKED.validate_json(capsys.readouterr().out).drift == 1.4
+    header, _, body = out.read_bytes().partition(b"end_header\n")
+    names = [line.split()[2] for line in header.splitlines() if line.startswith(b"property f")]
+    assert names[-2:] == [b"drift_t", b"drift_b"]
+    values = np.frombuffer(body[:60], "<f4", 14)
+    assert np.abs(values[12:]).max() < 1e-6
+
+
+@pytest.mark.slow
+def test_a_mesh_is_drawn_the_same_twice_and_nothing_is_left_of_a_mesh_without_extent(
+    sphere, tmp_path, capsys
+):
+    options = ["--unit", "mm", "--size", "64", "--widths", "1.4", "--view", "30,-20"]
+    pictures = [tmp_path / f"{k}.png" for k in range(2)]
+    for each in pictures:
+        assert run(sphere, *options, "--picture", each) == 0
+    first, second = (Image.open(each) for each in pictures)
+    assert first.size == second.size
+    assert np.array_equal(np.asarray(first), np.asarray(second))
+    # There is skin, which is redder than all texts and white.
+    colours = np.asarray(first).astype(int)
+    assert np.mean(colours[..., 0] > colours[..., 2] + 40) > 0.02
+    point = tmp_path / "point.obj"
+    point.write_text("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n")
+    capsys.readouterr()
+    assert (
+        run(point, "--unit", "mm", "--picture", tmp_path / "point.png", "-o", tmp_path / "p.ply")
+        == 2
+    )
+    assert "the mesh is a point in this view" in capsys.readouterr().err
+    assert not (tmp_path / "point.png").exists() and not (tmp_path / "p.ply").exists()
+
+
 def test_bytes_keep_half_a_step():
     tensors = np.random.default_rng(1).uniform(-0.5, 0.5, (100, 3))
     back = from_bytes(to_bytes(tensors))
@@ -86,7 +123,7 @@ def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
     [
         ("a.ply", None, [], "the unit of the mesh is not known"),
         ("a.ply", None, ["--unit", "mile"], "unit 'mile' is not known"),
-        ("a.ply", None, ["--unit", "mm"], "is no file"),
+        ("a.ply", None, ["--unit", "mm"], "No such file"),
         ("a.stl", "x", ["--unit", "mm"], "allowed are files that end with"),
         ("a.ply", "garbage", ["--unit", "mm"], "cannot be read as a mesh"),
         ("a.glb", "garbage", ["--unit", "mm"], "cannot be read as a mesh"),
@@ -95,6 +132,17 @@ def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
         ("a.ply", None, ["--unit", "mm", "--widths", "-1"], "--widths -1: allowed"),
         ("a.ply", None, ["--unit", "mm", "--range", "0"], "range = 0: allowed"),
         ("a.ply", None, ["--unit", "mm", "-o", "b.obj"], "allowed is a file that ends with .ply"),
+        (
+            "a.ply",
+            None,
+            ["--unit", "mm", "--picture", "b.jpg"],
+            "allowed is a file that ends with .png",
+        ),
+        ("a.ply", None, ["--unit", "mm", "--drift", "0"], "--drift 0: allowed are 0.001"),
+        ("a.ply", None, ["--unit", "mm", "--size", "9"], "--size 9: allowed are 32 to 1024"),
+        ("a.ply", None, ["--unit", "mm", "--view", "1"], "--view 1: allowed are an azimuth"),
+        ("a.ply", None, ["--unit", "mm", "--light", "0,91"], "--light 0,91: allowed are"),
+        ("a.ply", None, ["--unit", "mm", "--light", "nan,0"], "--light nan,0: allowed are"),
     ],
 )
 def test_bad_input_is_one_line(tmp_path, capsys, name, content, options, message):

@@ -3,6 +3,7 @@
 import io
 import itertools
 import json
+import os
 import struct
 import zlib
 
@@ -17,9 +18,11 @@ from coefficients.catalogue import entries
 from coefficients.exported_code import exported_values
 from coefficients.textures.exr import write_exr
 from quantities.fuzz import PS, G, Q, R
+from shadefit import images
 from shadefit.cli import main
 from shadefit.commands.render import run
 from shadefit.figures.values import round_up
+from shadefit.images import read_image as real_read_image
 from shadefit.outputs import RenderOutput
 from shadefit.render import image, sheet
 from shadefit.render.comparison import Comparison
@@ -283,16 +286,67 @@ def test_a_file_that_is_no_map_is_refused(tmp_path, content):
         azimuths(str(path), SCENES["sphere"].hits(SIZE))
 
 
+def png_chunk(kind: bytes, data: bytes) -> bytes:
+    """Return a chunk of a PNG file."""
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+# A name and compressed data, which is damaged, of another method, or unpacks to 64 MB.
+PROFILES = [
+    b"name\0\0damaged",
+    b"name\0\1" + zlib.compress(b"profile"),
+    b"name\0\0" + zlib.compress(bytes(1 << 26)),
+    b"no end of the name",
+    b"",
+]
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_damaged_colour_profile_is_ignored_or_refused_in_one_line(tmp_path, profile):
+    path = tmp_path / "map.png"
+    Image.fromarray(np.full((4, 4, 3), 128, np.uint8)).save(path)
+    data = path.read_bytes()
+    for kind in (b"iCCP", b"zTXt", b"iTXt"):
+        path.write_bytes(data[:33] + png_chunk(kind, profile) + data[33:])
+        try:
+            azimuths(str(path), SCENES["sphere"].hits(SIZE))
+        except ValueError as error:
+            assert str(error).startswith("fibers: ")
+            assert "\n" not in str(error)
+
+
+def test_a_pipe_or_a_device_is_no_map(tmp_path):
+    os.mkfifo(tmp_path / "pipe.png")
+    (tmp_path / "zero.png").symlink_to("/dev/zero")
+    for name in ("pipe.png", "zero.png"):
+        with pytest.raises(ValueError, match=rf"^fibers: .*{name}: it is no regular file"):
+            azimuths(str(tmp_path / name), SCENES["sphere"].hits(SIZE))
+
+
+def test_a_map_is_read_once_until_it_changes(tmp_path, monkeypatch):
+    path, hits, read = tmp_path / "map.png", SCENES["sphere"].hits(SIZE), []
+    monkeypatch.setattr(
+        images, "read_image", lambda *given: read.append(given) or real_read_image(*given)
+    )
+    for turn, (red, green) in enumerate([(128, 255), (255, 128), (128, 0)], start=1):
+        pixels = np.zeros((4, 4, 3), np.uint8)
+        pixels[..., 0], pixels[..., 1] = red, green
+        Image.fromarray(pixels).save(path)
+        os.utime(path, ns=(turn, turn))
+        first = azimuths(str(path), hits)
+        np.testing.assert_array_equal(azimuths(str(path), hits), first)
+        assert len(read) == turn
+        angle = np.arctan2(green / 127.5 - 1, red / 127.5 - 1)
+        np.testing.assert_allclose(first, angle, atol=1e-6)
+
+
 @pytest.mark.parametrize("size", [(4097, 1), (1, 4097), (15000, 15000), (2**31 - 1, 2**31 - 1)])
 def test_a_map_of_too_many_pixels_is_refused_before_they_are_read(tmp_path, size):
-    def chunk(kind, data):
-        return (
-            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        )
-
-    header = chunk(b"IHDR", struct.pack(">IIBBBBB", *size, 8, 2, 0, 0, 0))
+    header = png_chunk(b"IHDR", struct.pack(">IIBBBBB", *size, 8, 2, 0, 0, 0))
     path = tmp_path / "map.png"
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", b"") + chunk(b"IEND", b""))
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + header + png_chunk(b"IDAT", b"") + png_chunk(b"IEND", b"")
+    )
     with pytest.raises(ValueError, match=f"{size[0]}×{size[1]} pixels: allowed are 4096 an edge"):
         azimuths(str(path), SCENES["sphere"].hits(SIZE))
 

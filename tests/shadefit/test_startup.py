@@ -1,4 +1,7 @@
-"""What the command line does at once: help, lists, completion and refusals do not import JAX."""
+"""What the command line does at once: help, lists, tables as JSON and refusals do not import JAX.
+
+The other commands import the quantity that they need, and no solvers before they fit.
+"""
 
 import subprocess
 import sys
@@ -13,6 +16,15 @@ try:
 finally:
     print("jax" in sys.modules, file=sys.stderr)
 """
+OTHERS = """
+import sys
+from shadefit.cli import main
+slow = ("scipy", "optimistix", "lineax", "matplotlib", "quantities.skin", "quantities.fuzz.velvet")
+try:
+    main(["cost", "q"])
+finally:
+    print([name for name in slow if name in sys.modules], file=sys.stderr)
+"""
 
 
 def run(*arguments: str) -> tuple[int, str, str]:
@@ -24,12 +36,20 @@ def run(*arguments: str) -> tuple[int, str, str]:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["refit", "--help"], ["list"], ["list", "--json"]]
+    "arguments",
+    [["--help"], ["list"], ["export", "best/q-9"], ["export", "published/ps@printed"]],
 )
 def test_help_and_lists_do_not_wait_for_jax(arguments):
     status, out, _ = run(*arguments)
     assert status == 0
     assert out
+
+
+def test_a_command_imports_its_own_quantity_and_no_solver():
+    done = subprocess.run(
+        [sys.executable, "-c", OTHERS], capture_output=True, text=True, check=True
+    )
+    assert done.stderr == "[]\n"
 
 
 @pytest.mark.parametrize(

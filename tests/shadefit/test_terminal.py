@@ -5,12 +5,13 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from coefficients.packaged import names, packaged_table
 from programs.rounded_text import rounded_up
-from shadefit.terminal import print_table
+from shadefit.terminal import apart_from, print_lines, print_table
 from tests.shadefit.screen import Session, screen
 
 
@@ -79,7 +80,9 @@ def test_in_a_pipe_there_are_no_codes_and_columns_stand_side_by_side():
         command, capture_output=True, text=True, env=environment, check=True
     ).stdout
     assert "\x1b" not in text
-    assert re.search(r"^best/q-9 +q +pole-q +1\.134e-05 +≤ 1\.628e-05$", text, re.MULTILINE)
+    assert re.search(
+        r"^best/q-9 +1\.134e-05 +≤ 1\.628e-05\n +of q  form pole-q ", text, re.MULTILINE
+    )
 
 
 def test_lines_of_a_note_are_kept_and_an_empty_cell_below_left_out(capsys):
@@ -88,6 +91,23 @@ def test_lines_of_a_note_are_kept_and_an_empty_cell_below_left_out(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[:6] == ["title", "name  rms", "─" * 10, "a       1", "b       2", "    at x 1"]
     assert lines[6:] == [("word " * 40).strip(), "more", ""]
+
+
+def test_what_is_said_beside_a_file_on_standard_output_goes_to_standard_error(capsys):
+    for files in ([Path("-")], [None, Path("-")], [None, Path("file")], []):
+        with apart_from(*files):
+            print_table("title", ["name"], [["a"]])
+        out, error = capsys.readouterr()
+        assert ("title" in error, "title" in out) == (Path("-") in files, Path("-") not in files)
+
+
+def test_names_of_files_do_not_steer_the_terminal(capsys):
+    name = "\x1b[2J\u202e.json"
+    print_table(name, [name], [[name]], name)
+    print_lines(Path(name), name)
+    out = capsys.readouterr().out
+    assert out.count(r"\x1b[2J\u202e.json") == 6
+    assert "\x1b" not in out and "\u202e" not in out
 
 
 def test_an_interruption_leaves_one_clean_line(tmp_path):

@@ -105,9 +105,52 @@ def test_the_convex_part_clamps_eigenvalues():
         np.testing.assert_allclose(matrix(found), expected, atol=1e-15)
 
 
-@pytest.mark.parametrize("name", ["published", "along_light", "bending_along_light", "effective"])
-def test_values_and_gradients_are_finite_where_roots_and_quotients_are_zero(name):
-    curve = jax.value_and_grad(getattr(curvature, name), argnums=(0, 1))
+def test_a_cylinder_is_its_own_equivalent_and_the_scale_times_its_curvature_is_effective():
+    """Its curvature does not depend on the light, and the scale is the part across the axis."""
+
+    def every(tensor, light, cosine):
+        found = curvature.equivalent_cylinder(tensor, light, cosine)
+        return found, curvature.effective(tensor, light)
+
+    heights = np.sqrt(1 - np.sum(LIGHTS**2, 1)) * np.where(RANDOM.random(200) < 0.5, -1, 1)
+    compiled = jax.jit(jax.vmap(every))
+    turn = RANDOM.uniform(0, np.pi, 200)
+    x, y = np.cos(turn), np.sin(turn)
+    cylinders = 0.2 * np.stack([x * x, x * y, y * y], 1)
+    found, _ = compiled(cylinders, LIGHTS, heights)
+    across2 = heights**2 + (x * LIGHTS[:, 0] + y * LIGHTS[:, 1]) ** 2
+    np.testing.assert_allclose(found.scale, np.sqrt(across2), rtol=1e-13)
+    np.testing.assert_allclose(found.curvature, 0.2, rtol=1e-13)
+    np.testing.assert_allclose(found.cosine * found.scale, heights, rtol=1e-13, atol=1e-15)
+    found, effective = compiled(TENSORS, LIGHTS, heights)
+    np.testing.assert_allclose(found.scale * found.curvature, effective, rtol=1e-12)
+    assert np.max(found.scale) <= 1 + 1e-14
+    found, _ = compiled(0 * TENSORS, LIGHTS, heights)
+    assert np.all(found.curvature == 0)
+    np.testing.assert_allclose(found.cosine * found.scale, heights, rtol=1e-13)
+
+
+def test_the_drift_moves_the_cosine_along_the_light():
+    found = curvature.drifted(0.3, np.array([0.02, -0.01]), np.array([0.5, 0.2]), 1.4)
+    np.testing.assert_allclose(found, 0.3 + 1.4 * (0.01 - 0.002), rtol=1e-14)
+
+
+def _light_of_equivalent(tensor, light):
+    return sum(curvature.equivalent_cylinder(tensor, light, 1 - jnp.max(jnp.abs(light))))
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        curvature.published,
+        curvature.along_light,
+        curvature.bending_along_light,
+        curvature.effective,
+        _light_of_equivalent,
+    ],
+)
+def test_values_and_gradients_are_finite_where_roots_and_quotients_are_zero(function):
+    curve = jax.value_and_grad(function, argnums=(0, 1))
     tensors = jnp.array([[0.0, 0, 0], [0.1, 0, 0.1], [0.1, 0, -0.1], [0.2, 0, 0], [1e-300, 0, 0]])
     lights = jnp.array([[0.0, 0], [1, 0], [0, 1], [1e-200, 0], [0, 1e-8]])
     rows = [(t, v) for t in tensors for v in lights]
