@@ -65,7 +65,7 @@ def ambient_layer_lit(
 # the second, together with the level and slope of the correlation, to the radiance of the layer in
 # uniform light. 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
 LIT_FRACTION_CONSTANTS = (1.3, 0.834)
-LIT_LAYER_CONSTANTS = (1.3153, 0.9782, 0.8458, 0.3296)
+LIT_LAYER_CONSTANTS = (1.255, 0.9438, 0.8168, 0.4011)
 
 
 def corrected_layer(
@@ -74,7 +74,7 @@ def corrected_layer(
     cos_vt: Scalar,
     cos_nt: Scalar,
     alpha: Scalar,
-    constants: tuple[float, ...],
+    constants: tuple[Scalar, ...],
 ) -> Array:
     """Return the layer's radiance in light of radiance one, over the albedo.
 
@@ -91,7 +91,7 @@ def corrected_layer(
 
 
 def lit_by_constants(
-    constants: tuple[float, ...], up: Array, cos_vt: Scalar, alpha: Scalar
+    constants: tuple[Scalar, ...], up: Array, cos_vt: Scalar, alpha: Scalar
 ) -> Array:
     """Return `lit_fraction` with other constants (k₀, k₁). `up` is 1 − P_s."""
     alpha = jnp.asarray(alpha)
