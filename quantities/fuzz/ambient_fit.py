@@ -120,8 +120,8 @@ def fitting_lights() -> np.ndarray:
     # (1/3, 1/2, 1/6) are the parts of ((1 + x)/2)² along Legendre's P₀, P₁ and P₂.
     bands = np.array([1, 3, 3, 3, 5, 5, 5, 5, 5])
     parts = np.array([1 / 3, *[1 / 2] * 3, *[1 / 6] * 5]) * 4 * np.pi / bands
-    lobes = [np.array(axis, float) / np.linalg.norm(axis) for axis in LOBES]
-    return np.stack([uniform, *(parts * np.asarray(harmonics(axis)) for axis in lobes)], axis=1)
+    axes = np.array(LOBES) / np.linalg.norm(LOBES, axis=1)[:, None]
+    return np.column_stack([uniform, (parts * np.asarray(jax.vmap(harmonics)(axes))).T])
 
 
 def model_weights(model: AmbientModel, at: Samples, constants=None) -> Array:
