@@ -1,5 +1,6 @@
 """Float64 for every test, as the entry points set it; the same drawn examples in every run."""
 
+import os
 import re
 
 import jax
@@ -7,9 +8,11 @@ import pytest
 from hypothesis import settings
 
 jax.config.update("jax_enable_x64", True)
+# Commands that tests start leave the user's cache of compiled programs alone.
+os.environ["SHADEFIT_CACHE"] = "off"
 
 SLOW_NAMES = re.compile(
-    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))|sggx-filter|ggx-(scale|bias)"
+    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue)|lobe|band)|sggx-filter|ggx-(scale|bias)"
 )
 
 # A run that fails must fail again on the next machine. `--hypothesis-profile default` draws others.
@@ -21,8 +24,8 @@ settings.load_profile("repeatable")
 def pytest_collection_modifyitems(items):
     """Call slow what takes long, or what another test stands for.
 
-    The page of tests in a browser takes half a minute to make. The six quantities of skin differ in
-    numbers only: by default, red light on a cylinder stands for all. The exact values of filtered
+    The page of tests in a browser takes half a minute to make. The quantities of skin are
+    much alike: by default, red light on a cylinder stands for all. The exact values of filtered
     lobes, and of A and B of GGX, take long to compile.
     """
     for item in items:

@@ -47,6 +47,13 @@ POINTS = {
         for surface in ("cylinder", "sphere")
         for channel in ("red", "green", "blue")
     },
+    "skin-lobe-cylinder": ["--cosine", "0.2", "--width", "0.3"],
+    "skin-lobe-sphere": ["--cosine", "0.2", "--width", "0.3"],
+    **{
+        f"skin-band-{band}-{channel}": ["--curvature", "0.1"]
+        for band in (1, 2)
+        for channel in ("red", "green", "blue")
+    },
 }
 
 
@@ -174,6 +181,26 @@ def test_a_checkout_is_known_by_its_project_file(monkeypatch, tmp_path):
     assert packaged.in_checkout()
     monkeypatch.setattr(packaged, "FOLDER", tmp_path / "site-packages" / "coefficients" / "tables")
     assert not packaged.in_checkout()
+
+
+@pytest.mark.parametrize(
+    ("root", "project", "ours"),
+    [
+        ("checkout", '[project]\nname = "shadefit"\n', True),
+        # Other packages have such files too, and install them by mistake.
+        ("vendored", '[project]\nname = "other"\n', False),
+        ("vendored", "[tool.black]\n", False),
+        ("vendored", "project = 1\n", False),
+        ("vendored", "no project file", False),
+        ("site-packages", '[project]\nname = "shadefit"\n', False),
+        ("dist-packages", '[project]\nname = "shadefit"\n', False),
+    ],
+)
+def test_only_the_project_file_of_a_checkout_counts(monkeypatch, tmp_path, root, project, ours):
+    monkeypatch.setattr(packaged, "FOLDER", tmp_path / root / "coefficients" / "tables")
+    (tmp_path / root).mkdir()
+    (tmp_path / root / "pyproject.toml").write_text(project)
+    assert packaged.in_checkout() is ours
 
 
 @pytest.mark.parametrize(
