@@ -120,9 +120,10 @@ def run(
         legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
     # Data have no value between their points: only tables can be evaluated there.
     exact = legs[reference.best_leg]["value"] if legs else None
-    if exact is not None and math.isnan(exact):
+    if exact is not None and not math.isfinite(exact):
+        what = "has no limit" if math.isnan(exact) else "is infinite"
         raise ValueError(
-            f"{owner.symbol} has no limit at {place(arguments)}, and no value: "
+            f"{owner.symbol} {what} at {place(arguments)}, and no value: "
             "allowed are all other points of its domain"
         )
     found = {
@@ -286,6 +287,9 @@ def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float | N
     if outside:
         return {"value": None, "difference": None, "reason": "; ".join(outside)}
     value = float(fitted(*arguments.values()))
+    if not math.isfinite(value):
+        what = "no number" if math.isnan(value) else "infinite"
+        return {"value": None, "difference": None, "reason": f"its value is {what} there"}
     return {
         "value": value,
         "difference": None if exact is None else value - exact,
