@@ -13,6 +13,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from integrals.along_lines import estimates_along_lines
+from integrals.compilation import jit_for_few_calls
 from integrals.reference import Estimate, Reference, in_batches
 
 # A quantity with smaller batches has so many nodes at a point that one point fills the cache.
@@ -31,6 +33,14 @@ def estimates_at_many(reference: Reference, points: np.ndarray) -> Estimate:
         return Estimate(jnp.zeros(0), jnp.zeros(0))
     if reference.batch >= _SMALL_BATCH:
         return reference.estimates(points)
+    exact = functools.partial(_in_groups, reference)
+    if reference.smooth_along is not None:
+        return estimates_along_lines(reference, points, exact)
+    return exact(points)
+
+
+def _in_groups(reference: Reference, points: np.ndarray) -> Estimate:
+    """Evaluate points (n, axes), with n > 0; those with the same needs together."""
     order = np.lexsort(points.T[::-1])
     groups: dict[tuple[tuple[str, Any], ...], list[np.ndarray]] = {}
     for first in range(0, len(points), _BLOCK):
@@ -51,4 +61,4 @@ def _one_by_one(
     reference: Reference, options: tuple[tuple[str, Any], ...]
 ) -> Callable[[np.ndarray], Estimate]:
     leg = reference.legs[reference.best_leg]
-    return jax.jit(lambda points: jax.lax.map(lambda x: leg(*x, **dict(options)), points))
+    return jit_for_few_calls(lambda points: jax.lax.map(lambda x: leg(*x, **dict(options)), points))
