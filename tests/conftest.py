@@ -12,7 +12,7 @@ jax.config.update("jax_enable_x64", True)
 os.environ["SHADEFIT_CACHE"] = "off"
 
 SLOW_NAMES = re.compile(
-    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))|sggx-filter|ggx-(scale|bias)"
+    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue)|lobe|band)|sggx-filter|ggx-(scale|bias)"
 )
 
 # A run that fails must fail again on the next machine. `--hypothesis-profile default` draws others.
@@ -24,8 +24,8 @@ settings.load_profile("repeatable")
 def pytest_collection_modifyitems(items):
     """Call slow what takes long, or what another test stands for.
 
-    The page of tests in a browser takes half a minute to make. The six quantities of skin differ in
-    numbers only: by default, red light on a cylinder stands for all. The exact values of filtered
+    The page of tests in a browser takes half a minute to make. The quantities of skin are
+    much alike: by default, red light on a cylinder stands for all. The exact values of filtered
     lobes, and of A and B of GGX, take long to compile.
     """
     for item in items:

@@ -157,8 +157,9 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
     from fitting import form_values
     from integrals.many_points import estimates_at_many
+    from shadefit.encoding import visible
     from shadefit.outputs import PointsOutput
-    from shadefit.terminal import print_json
+    from shadefit.terminal import print_json, print_lines
 
     owner = _owner(name)
     if out == OUTPUT:
@@ -194,9 +195,9 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
             )
         )
     elif out is None:
-        print(csv_text(columns), end="")
+        print(visible(csv_text(columns)), end="")
     else:
-        print(out)
+        print_lines(out)
 
 
 def _owner(name: str) -> "Problem":

@@ -34,25 +34,30 @@ def ends(process: int) -> bool:
     return False
 
 
+@pytest.fixture(autouse=True)
+def nothing_else_stays():
+    """Each test ends what it started; workers of other tests may go on."""
+    before = set(running._RUNNING)
+    yield
+    assert before == running._RUNNING
+
+
 def test_status_and_output_are_returned_and_input_is_read(tmp_path):
     command = ["sh", "-c", "cat; pwd; echo bad >&2; exit 3"]
     status, out, complaint = run(command, 10.0, tmp_path, b"given\n")
     assert (status, complaint) == (3, b"bad\n")
     assert out == f"given\n{tmp_path}\n".encode()
-    assert not running._RUNNING
 
 
 def test_a_program_that_does_not_start_leaves_nothing():
     with pytest.raises(FileNotFoundError):
         run(["/no/such/program"], 1.0)
-    assert not running._RUNNING
 
 
 def test_what_a_hung_program_started_is_killed_too(tmp_path):
     with pytest.raises(ToolchainError, match=r"no end after 0\.5 s"):
         execute(["sh", "-c", _WITH_ANOTHER], failure="it hangs", folder=tmp_path, seconds=0.5)
     assert ends(int((tmp_path / "other").read_text()))
-    assert not running._RUNNING
 
 
 _COMPILING = f"""
