@@ -11,12 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from coefficients.candidates import candidates, fit_candidate, fit_task, name_of, task_of
+from coefficients.candidates import candidates, fit_candidate, name_of
 from coefficients.catalogue import Entry, published, resolve
 from coefficients.exported_code import operations_of
 from coefficients.files import write_whole
 from coefficients.frontier import best_so_far, closed_form
 from coefficients.packaged import EXACT, Kind
+from coefficients.search_tasks import fit_task, task_of
 from coefficients.table import Table, parse, read, serialise
 from coefficients.workers import Workers
 from fitting import Form, Goal, common_domain, judge

@@ -102,7 +102,7 @@ class Cluster:
             futures = client.map(function, list(tasks), pure=False)
             numbers = {each.key: k for k, each in enumerate(futures)}
             try:
-                for each in as_completed(futures):
+                for each in as_completed(futures, loop=client.loop):
                     yield tasks[numbers[each.key]], each.result()
             except KilledWorker as error:
                 raise ValueError(

@@ -9,10 +9,11 @@ from typing import Any, Literal, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, Device
 
 from integrals.compilation import jit_for_few_calls
 from integrals.data import Data
+from integrals.devices import all_devices, spread
 from integrals.sampling import Sampling
 
 # How points are distributed along an axis: evenly, evenly in the logarithm, or as the squares of
@@ -198,17 +199,24 @@ class Reference:
         """
         more = self.proof_options if for_proof else {}
         options = tuple({**self.options_at(points), **more}.items())
-        return in_batches(functools.partial(_estimates, self, options), points, self.batch)
+        devices = all_devices()
+        evaluate = functools.partial(_estimates, self, options, devices)
+        return in_batches(evaluate, points, self.batch * len(devices))
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Evaluate the most exact leg at points (n, axes). Returns the values (n,)."""
         return np.asarray(self.estimates(points).value)
 
 
-@jit_for_few_calls(static=(0, 1))
-def _estimates(reference: Reference, options: tuple[tuple[str, Any], ...], points) -> Estimate:
+@jit_for_few_calls(static=(0, 1, 2))
+def _estimates(
+    reference: Reference,
+    options: tuple[tuple[str, Any], ...],
+    devices: tuple[Device, ...],
+    points: Array,
+) -> Estimate:
     leg = reference.legs[reference.best_leg]
-    return jax.vmap(lambda x: leg(*x, **dict(options)))(points)
+    return spread(jax.vmap(lambda x: leg(*x, **dict(options))), devices)(points)
 
 
 class Batches:

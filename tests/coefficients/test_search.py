@@ -167,12 +167,12 @@ def test_refusals_of_other_processes_are_kept(tmp_path, monkeypatch):
 def test_processes_and_a_cluster_give_the_files_of_one_process(tmp_path):
     distributed = pytest.importorskip("distributed")
     folders = [tmp_path / each for each in ("alone", "processes", "cluster")]
-    of(folders[0], budget=3).run()
-    of(folders[1], budget=3).run(workers=LocalProcesses(2))
+    of(folders[0], budget=4).run()
+    of(folders[1], budget=4).run(workers=LocalProcesses(2))
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address=None
     ) as cluster:
-        of(folders[2], budget=3).run(workers=Cluster(cluster.scheduler_address))
+        of(folders[2], budget=4).run(workers=Cluster(cluster.scheduler_address))
     alone, *others = map(files_of, folders)
     assert len(alone) >= 2
     assert others == [alone, alone]
