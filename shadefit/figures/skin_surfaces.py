@@ -119,13 +119,13 @@ def draw_surfaces() -> Figure:
     for column, (name, image) in enumerate(found.images.items()):
         upper = figure.add_axes((column * across, 0.5, across * 0.97, tall))
         picture = np.where(found.covered[..., None], to_srgb(ALBEDO * image), 1.0)
-        upper.imshow(picture, interpolation="nearest")
+        upper.imshow(picture, interpolation="none")
         upper.set_title(name)
         if name == "truth":
             continue
         lower = figure.add_axes((column * across, 0.0, across * 0.97, tall))
         off = np.where(found.covered, (image - truth)[..., 0], np.nan)
-        lower.imshow(off, cmap=ERRORS, vmin=-_END, vmax=_END, interpolation="nearest")
+        lower.imshow(off, cmap=ERRORS, vmin=-_END, vmax=_END, interpolation="none")
         inside = off[found.covered]
         rms, largest = np.sqrt(np.mean(inside**2)), np.abs(inside).max()
         lower.set_title(f"rms {rms:.4f}, largest {largest:.3f}", fontsize=8, pad=2)
