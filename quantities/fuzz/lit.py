@@ -37,4 +37,6 @@ LIT = Problem(
         codomain=_CODOMAIN,
         material="FuzzLitMaterial",
     ),
+    # A table of it names no arguments for the axes: the code takes v·t and P_s for three of them.
+    topic="fuzz",
 )
