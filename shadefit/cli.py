@@ -115,7 +115,11 @@ _add(
     "shadefit curvature hand.glb --unit m --widths none --json",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")
-_add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")
+_add(
+    "search",
+    search,
+    "Examples: shadefit search q --budget 12 --max-error 2e-5; shadefit search ps --jobs 8",
+)
 _add("compare", compare, "Example: shadefit compare ps my/table.json --json")
 _add(
     "evaluate",
