@@ -5,7 +5,7 @@ instead of fitting again, so that an interrupted search continues where it stopp
 be fitted in several processes; only the process that runs the search writes.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,10 +14,12 @@ import numpy as np
 from coefficients.candidates import candidates, fit_candidate, name_of
 from coefficients.catalogue import Entry, published, resolve
 from coefficients.exported_code import operations_of
+from coefficients.expression import require_same
 from coefficients.files import write_whole
 from coefficients.frontier import best_so_far, closed_form
 from coefficients.packaged import EXACT, Kind
 from coefficients.search_tasks import fit_task, task_of
+from coefficients.stated_errors import misstatements
 from coefficients.table import Table, parse, read, serialise
 from coefficients.workers import Workers
 from fitting import Form, Goal, common_domain, judge
@@ -94,13 +96,13 @@ class Search:
         refused, tried, last = 0, 0, None
         # Operations are counted without a fit, so that forms beyond the budget cost no time.
         chosen = [form for form in self.candidates() if self._is_within_budget(form)]
-        made = [self._made_before(form) for form in chosen]
+        made = self._made_before(chosen)
         settled = [self._refusal(form).is_file() for form in chosen]
         if workers is not None:
             pairs = zip(chosen, settled, made, strict=True)
             to_fit = [form for form, no, yes in pairs if not no and yes is None]
             self._fit_all(to_fit, progress, workers)
-            made = [self._made_before(form) for form in chosen]
+            made = self._made_before(chosen)
             settled = [self._refusal(form).is_file() for form in chosen]
         total = sum(not no and yes is None for no, yes in zip(settled, made, strict=True))
         for form, no, before in zip(chosen, settled, made, strict=True):
@@ -149,14 +151,31 @@ class Search:
         blank = form.fitted(0.37 + 0.013 * np.arange(form.size))
         return operations_of(Entry("blank", "file", self.owner, None, blank))
 
-    def _made_before(self, form: Form) -> Table | None:
+    def _made_before(self, forms: Sequence[Form]) -> list[Table | None]:
+        """Return the table of each form that an earlier run made, or None.
+
+        A table is not believed: if it states an error that is not its own, its form is fitted anew.
+        """
+        read = [self._read_before(form) for form in forms]
+        kept = [(form, table) for form, table in zip(forms, read, strict=True) if table is not None]
+        tables = [(form.fitted(np.array(table.coefficients)), table) for form, table in kept]
+        wrong = iter(misstatements(self.owner.reference, tables))
+        return [None if table is None or next(wrong) is not None else table for table in read]
+
+    def _read_before(self, form: Form) -> Table | None:
         path = self.out / f"{self.name_of(form)}.json"
         if not path.is_file():
             return None
         table = read(path)
         made_for = Goal() if table.goal is None else Goal(**table.goal.model_dump())
         same = (table.form, table.shape, made_for) == (form.name, form.shape, self.goal)
-        return table if same and table.errors is not None else None
+        if not same or table.errors is None or table.size != form.size:
+            return None
+        try:
+            require_same(table, form)
+        except ValueError:
+            return None
+        return table
 
     def _refusal(self, form: Form) -> Path:
         """Return the file that says why a candidate was refused. If it exists, no fit is tried."""

@@ -14,6 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Device
 
+from integrals.along_lines import estimates_along_lines
+from integrals.compilation import jit_for_few_calls
 from integrals.devices import all_devices, spread
 from integrals.reference import Estimate, Reference, in_batches
 
@@ -33,6 +35,14 @@ def estimates_at_many(reference: Reference, points: np.ndarray) -> Estimate:
         return Estimate(jnp.zeros(0), jnp.zeros(0))
     if reference.batch >= _SMALL_BATCH:
         return reference.estimates(points)
+    exact = functools.partial(_in_groups, reference)
+    if reference.smooth_along is not None:
+        return estimates_along_lines(reference, points, exact)
+    return exact(points)
+
+
+def _in_groups(reference: Reference, points: np.ndarray) -> Estimate:
+    """Evaluate points (n, axes), with n > 0; those with the same needs together."""
     order = np.lexsort(points.T[::-1])
     groups: dict[tuple[tuple[str, Any], ...], list[np.ndarray]] = {}
     for first in range(0, len(points), _BLOCK):
@@ -58,4 +68,4 @@ def _one_by_one(
     def evaluate(points):
         return jax.lax.map(lambda x: leg(*x, **dict(options)), points)
 
-    return jax.jit(spread(evaluate, devices))
+    return jit_for_few_calls(spread(evaluate, devices))

@@ -142,6 +142,8 @@ class Reference:
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
     `proof_options` are arguments for proofs, which need few but more exact values.
     `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
+    `smooth_along` is the name of an axis along which many values may be interpolated
+    (`integrals.along_lines`); None: none is.
 
     A quantity that is only known by its `data` has no leg: it has values at the data's own points.
     A quantity that is only known by a table has neither legs nor data.
@@ -161,6 +163,7 @@ class Reference:
     proof_options: Mapping[str, Any] = field(default_factory=dict)
     codomain: tuple[float | int, float | int] = (0.0, 1.0)
     data: Data | None = None
+    smooth_along: str | None = None
 
     @property
     def legs(self) -> dict[str, Leg]:

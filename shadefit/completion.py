@@ -44,7 +44,7 @@ _CURVATURES = tuple(
         "unpack",
     )
 )
-_AMBIENT = tuple(f"ambient/{name}" for name in ("talk", "cheap", "recommended"))
+_AMBIENT = tuple(f"ambient/{name}" for name in ("talk", "cheap", "recommended", "best"))
 # Functions that are exported, but not fitted.
 FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES, *_AMBIENT)
 

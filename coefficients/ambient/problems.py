@@ -15,7 +15,7 @@ from programs.functions import group_inputs
 from quantities.calling_convention import CallingConvention
 from quantities.problem import ExactCode, Problem
 from shading import AMBIENT_MODELS, direction, fiber_direction, harmonics
-from shading.fuzz.ambient_models import LEAST_ALPHA
+from shading.fuzz.cone_lights import LEAST_ALPHA
 
 # The models that are exported, as far as `shading` has them, from cheap to precise
 EXPORTED = ("talk", "cheap", "recommended", "best")

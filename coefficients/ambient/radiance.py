@@ -26,7 +26,7 @@ from shading import (
     ambient_attenuation,
     light_weights,
 )
-from shading.fuzz.ambient_models import LEAST_ALPHA, LEAST_COSINE
+from shading.fuzz.cone_lights import LEAST_ALPHA, LEAST_COSINE
 
 # The largest density of the tables of G and Q
 LARGEST_DENSITY = 0.5

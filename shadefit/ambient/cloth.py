@@ -1,18 +1,13 @@
-"""A picture that `shadefit ambient` draws: a cloth in a strong light of nine harmonics.
+"""A cloth in a strong light of nine harmonics, exact and by two ambient models.
 
-The light is a broad lobe and a uniform rest, which nine harmonics represent exactly. The cloth is
-shown three times: the layer and its base by quadrature of the whole BRDF, and by two ambient
-models, with the tables of the exported functions.
+The light is a broad lobe and a uniform rest, which nine harmonics represent exactly. The exact
+image is quadrature of the whole BRDF. The models take the tables of the exported functions.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import jax
 import numpy as np
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 from scipy.interpolate import RectBivariateSpline
 
 from coefficients.ambient import tables
@@ -20,12 +15,10 @@ from integrals.fuzz.radiance import base_response
 from shadefit.ambient.lights import LOBE
 from shadefit.ambient.models import EXPORTED, model_weights, views
 from shadefit.ambient.radiances import HEMISPHERE_RULE, layer_responses
-from shadefit.figures.style import ERRORS, render
 from shadefit.render.fibers import azimuths
 from shadefit.render.image import SAMPLES
 from shadefit.render.scenes import SCENES, Hits
 from shadefit.render.settings import Settings
-from shadefit.render.srgb import to_srgb
 from shading import ambient_attenuation, escape, harmonics, roughness_from_spread
 
 SETTINGS = Settings(
@@ -33,7 +26,7 @@ SETTINGS = Settings(
 )
 # The axis of the lobe ((1 + ω·s)/2)², its linear RGB, and that of the uniform light.
 AXIS, KEY, REST = (0.93, 0.2, 0.31), (5.8, 5.1, 4.1), (0.2, 0.24, 0.3)
-MODELS = {"talk": "talk's model", "recommended": "recommended model"}
+MODELS = ("talk", "recommended")
 # Exact radiances are computed at these values of √(v·n) and azimuths of half a circle, and
 # interpolated by bicubic splines.
 _ROOTS, _HALF_CIRCLE = np.sqrt(np.linspace(0.1**2, 1, 41)), np.linspace(0, np.pi, 37)
@@ -42,8 +35,6 @@ _LEAST_COSINE = float(_ROOTS[0] ** 2)
 _ODD = (1, 4, 5)
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 _FLAT = np.sqrt(4 * np.pi)
-# The edge of an image in inches, and where the colour scale of differences ends.
-_INCHES, _LIMIT = 1.9, 1.0
 
 
 @dataclass(frozen=True)
@@ -57,12 +48,6 @@ class Cloth:
         """Return the luminance (h, w) of a model minus the exact, over the mean exact one."""
         exact = self.exact @ _LUMINANCE
         return (self.models[name] @ _LUMINANCE - exact) / exact.mean()
-
-
-def draw_cloth(settings: Settings = SETTINGS) -> bytes:
-    """Return a PNG of the cloth: exact, by two models, and the differences of both."""
-    cloth = render_cloth(settings)
-    return render(lambda: _draw(cloth))["png"]
 
 
 def render_cloth(settings: Settings = SETTINGS) -> Cloth:
@@ -151,25 +136,3 @@ def _model_base(at: np.ndarray, light: np.ndarray, fiber: np.ndarray) -> np.ndar
     received = _seen(bands * np.asarray(harmonics(np.array([0.0, 0.0, 1.0]))), light)
     colour = (q + fiber * r * (1 - q)) / (q + r * (1 - q))
     return down[:, None] * colour * received / np.pi
-
-
-def _draw(cloth: Cloth) -> Figure:
-    images = {"exact": cloth.exact, **{MODELS[k]: v for k, v in cloth.models.items()}}
-    count = len(images) + len(MODELS)
-    figure = Figure(figsize=(count * _INCHES + 0.1, _INCHES + 0.75), layout="constrained")
-    axes = figure.subplots(1, count)
-    for axis, (name, image) in zip(axes, images.items(), strict=False):
-        axis.imshow(to_srgb(image))
-        axis.set_title(name)
-    for axis, name in zip(axes[len(images) :], MODELS, strict=True):
-        off = cloth.differences(name)
-        axis.imshow(off, cmap=ERRORS, vmin=-_LIMIT, vmax=_LIMIT)
-        axis.set_title(f"{name} − exact")
-        axis.set_xlabel(f"rms {np.sqrt(np.mean(off**2)):.1%} of the mean")
-    for axis in axes:
-        axis.set(xticks=[], yticks=[])
-        axis.spines[:].set_visible(False)
-    bar: dict[str, Any] = {"location": "bottom", "aspect": 30, "shrink": 0.8, "extend": "both"}
-    scale = ScalarMappable(Normalize(-_LIMIT, _LIMIT), ERRORS)
-    figure.colorbar(scale, ax=axes[len(images) :], label="over the mean luminance", **bar)
-    return figure

@@ -9,21 +9,20 @@ from shadefit.commands.options import Json
 
 
 def ambient(
-    out: Annotated[Path, typer.Option(help="Folder for the two pictures.")] = Path("build/figures"),
+    out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("build/figures"),
     json: Json = False,
 ) -> None:
     """Measure the errors of the ambient models, and their largest radiance in uniform light.
 
-    Exact radiances are integrals of the whole BRDF. The pictures are ambient.png, the layer over
-    all views, and ambient-cloth.png, a cloth in a strong light of nine harmonics.
+    Exact radiances are integrals of the whole BRDF. The picture shows the layer over all
+    views, exact and by two models.
     """
     run(out, json)
 
 
 def run(out: Path, json: bool) -> None:
-    """Measure the ambient models, write two pictures, and print tables or one JSON object."""
+    """Measure the ambient models, write `ambient.png`, and print tables or one JSON object."""
     from coefficients.files import require_writable, write_whole_bytes
-    from shadefit.ambient.cloth import draw_cloth
     from shadefit.ambient.energy import largest_radiances
     from shadefit.ambient.errors import errors_with_phase_integral, model_errors
     from shadefit.ambient.models import model_rows
@@ -34,7 +33,7 @@ def run(out: Path, json: bool) -> None:
     from shadefit.terminal import print_json
 
     require_writable(out)
-    paths = [out / "ambient.png", out / "ambient-cloth.png"]
+    path = out / "ambient.png"
     with stages() as progress:
         stage = progress.begin("exact radiances by quadrature", total=3)
         found = radiances(materials_and_views())
@@ -42,9 +41,8 @@ def run(out: Path, json: bool) -> None:
         stage.show("models")
         models = model_rows(found)
         stage.advance()
-        stage.show("pictures")
-        for path, draw in zip(paths, (draw_ambient, draw_cloth), strict=True):
-            write_whole_bytes(path, draw())
+        stage.show("picture")
+        write_whole_bytes(path, draw_ambient())
     rows, with_integral = model_errors(found), errors_with_phase_integral(found)
     largest = largest_radiances(found)
     if json:
@@ -52,13 +50,13 @@ def run(out: Path, json: bool) -> None:
         others = {
             "energy": largest,
             "rms_without_symmetry": with_integral,
-            "files": [str(path) for path in paths],
+            "files": [str(path)],
         }
         print_json(AmbientOutput.model_validate({**record, **others}))
         return
     _print_errors(rows, with_integral, list(found.models), len(found.points))
     _print_models(models)
-    _print_energy(largest, paths)
+    _print_energy(largest, path)
 
 
 def _print_errors(
@@ -113,13 +111,13 @@ def _print_models(rows: list[dict]) -> None:
     )
 
 
-def _print_energy(rows: list[dict], paths: list[Path]) -> None:
+def _print_energy(rows: list[dict], path: Path) -> None:
     from shadefit.terminal import place, print_table
 
     print_table(
         "Largest radiance in uniform light of radiance one",
         ["in", "largest", "at"],
         [[row["what"], f"{row['largest']:.4f}", place(row["where"])] for row in rows],
-        f"Of the same points; {', '.join(map(str, paths))}.",
+        f"Of the same points; {path}.",
         below=1,
     )

@@ -63,9 +63,9 @@ def ambient_layer_lit(
 
 # The constants k₀ and k₁ in ā² = (v·t)² (1 − k₀α) + k₁ α (1 − P_s). The first are fitted to E_lit,
 # the second, together with the level and slope of the correlation, to the radiance of the layer in
-# uniform light. 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
+# uniform light (`quantities.fuzz.ambient_fit`). 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
 LIT_FRACTION_CONSTANTS = (1.3, 0.834)
-LIT_LAYER_CONSTANTS = (1.3153, 0.9782, 0.8458, 0.3296)
+LIT_LAYER_CONSTANTS = (1.255, 0.9438, 0.8168, 0.4011)
 
 
 def corrected_layer(
@@ -74,7 +74,7 @@ def corrected_layer(
     cos_vt: Scalar,
     cos_nt: Scalar,
     alpha: Scalar,
-    constants: tuple[float, ...],
+    constants: tuple[Scalar, ...],
 ) -> Array:
     """Return the layer's radiance in light of radiance one, over the albedo.
 
@@ -87,11 +87,12 @@ def corrected_layer(
     view2, normal2 = (1 - kappa * jnp.asarray(each) ** 2 for each in (cos_vt, cos_nt))
     areas = jnp.sqrt(view2 * normal2)
     lit = lit_by_constants(constants[:2], up, cos_vt, alpha)
-    return lit * (scattering * (constants[2] + constants[3] * up * areas))
+    # Views of dense layers at a grazing angle could have up to 1.02.
+    return jnp.minimum(lit * (scattering * (constants[2] + constants[3] * up * areas)), 1.0)
 
 
 def lit_by_constants(
-    constants: tuple[float, ...], up: Array, cos_vt: Scalar, alpha: Scalar
+    constants: tuple[Scalar, ...], up: Array, cos_vt: Scalar, alpha: Scalar
 ) -> Array:
     """Return `lit_fraction` with other constants (k₀, k₁). `up` is 1 − P_s."""
     alpha = jnp.asarray(alpha)

@@ -42,15 +42,20 @@ class LayerView(NamedTuple):
 class LayerLight(NamedTuple):
     """Moments of the light that a layer sends to a view, over the albedo of the fibres; scalars.
 
-    The mean direction of the light is R = `along_normal` n + `along_view` v + `along_fiber` t. The
-    mean square is M2/M0 = I/3 + the traceless part of
+    The mean direction of the light is R = `along_normal` n + `along_view` v + `along_fiber` t. Its
+    mean square M2/M0 is I/3 + the traceless part of the symmetric matrix
 
-        `about_mean` R Rᵀ + `about_normal` n nᵀ + `about_view` v vᵀ + `about_fiber` t tᵀ.
+        `about_mean` R Rᵀ + `about_normal` n nᵀ + `about_view` v vᵀ + `about_fiber` t tᵀ
+        + `normal_view` (n vᵀ + v nᵀ)/2 + `normal_fiber` (n tᵀ + t nᵀ)/2
+        + `view_fiber` (v tᵀ + t vᵀ)/2.
+
+    A term that a model does not have is the number 0.0, and costs nothing.
 
     Attributes:
         level: M0, the radiance of the layer in light of radiance one everywhere.
         along_normal, along_view, along_fiber: coefficients of R.
-        about_mean, about_normal, about_view, about_fiber: coefficients of the mean square.
+        about_mean, about_normal, about_view, about_fiber, normal_view, normal_fiber, view_fiber:
+            coefficients of the mean square.
     """
 
     level: Scalar
@@ -61,6 +66,9 @@ class LayerLight(NamedTuple):
     about_normal: Scalar = 0.0
     about_view: Scalar = 0.0
     about_fiber: Scalar = 0.0
+    normal_view: Scalar = 0.0
+    normal_fiber: Scalar = 0.0
+    view_fiber: Scalar = 0.0
 
 
 def mean_direction(light: LayerLight, normal: Vector, view: Vector, fiber: Vector) -> Array:
@@ -72,6 +80,13 @@ def mean_direction(light: LayerLight, normal: Vector, view: Vector, fiber: Vecto
     return n * light.along_normal + v * light.along_view + t * light.along_fiber
 
 
+def length_squared(light: LayerLight, cos_vn: Scalar, cos_vt: Scalar, cos_nt: Scalar) -> Array:
+    """Return |R|² from the coefficients of R and the cosines v·n, v·t and n·t."""
+    n, v, t = map(jnp.asarray, (light.along_normal, light.along_view, light.along_fiber))
+    crossed = n * v * cos_vn + t * (n * cos_nt + v * cos_vt)
+    return n * n + v * v + t * t + 2 * crossed
+
+
 def light_weights(light: LayerLight, normal: Vector, view: Vector, fiber: Vector) -> Array:
     """Return the weights (9,) of the nine harmonics of a light in the radiance of the layer.
 
@@ -79,32 +94,47 @@ def light_weights(light: LayerLight, normal: Vector, view: Vector, fiber: Vector
     each colour. `normal`, `view` and `fiber` are n, v and t, unit vectors in the frame in which the
     light is given. The weights are M0 times the mean harmonics of the directions of the light.
     """
-    # notation: mean = R, (x, y) of a vector name its components.
     mean = mean_direction(light, normal, view, fiber)
-    terms = (
-        (light.about_mean, mean),
-        (light.about_normal, jnp.asarray(normal)),
-        (light.about_view, jnp.asarray(view)),
-        (light.about_fiber, jnp.asarray(fiber)),
-    )
-    used = [(scale, each) for scale, each in terms if not _is_zero(scale)]
     first = (_FIRST * light.level) * mean
     flat = jnp.asarray(_FLAT * light.level)
-    if not used:
+    pairs = [
+        (left, right)
+        for left, terms in (
+            (mean, ((light.about_mean, mean),)),
+            (
+                jnp.asarray(normal),
+                (
+                    (light.about_normal, normal),
+                    (light.normal_view, view),
+                    (light.normal_fiber, fiber),
+                ),
+            ),
+            (jnp.asarray(view), ((light.about_view, view), (light.view_fiber, fiber))),
+            (jnp.asarray(fiber), ((light.about_fiber, fiber),)),
+        )
+        if (right := _combined(terms)) is not None
+    ]
+    if not pairs:
         zero = jnp.zeros_like(flat)
         return jnp.stack([flat, first[1], first[2], first[0], *[zero] * 5])
-    xx, yy, zz, xy, yz, xz = (
-        sum(scale * each[i] * each[j] for scale, each in used)
-        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
-    )
-    second = _SECOND * light.level
+
+    def entry(i: int, j: int) -> Array:
+        """Return twice an element of the matrix off its diagonal, and once on it."""
+        if i == j:
+            parts = [left[i] * right[i] for left, right in pairs]
+        else:
+            parts = [left[i] * right[j] + left[j] * right[i] for left, right in pairs]
+        return sum(parts[1:], parts[0])
+
+    xx, yy, zz = entry(0, 0), entry(1, 1), entry(2, 2)
+    half = (_SECOND / 2) * light.level
     return jnp.stack(
         [
             flat,
             *(first[1], first[2], first[0]),
-            *(second * xy, second * yz),
+            *(half * entry(0, 1), half * entry(1, 2)),
             (_ZONAL * light.level) * (2 * zz - xx - yy),
-            *(second * xz, (second / 2) * (xx - yy)),
+            *(half * entry(0, 2), half * (xx - yy)),
         ]
     )
 
@@ -125,6 +155,12 @@ def layer_radiance(
 # The constants of Y₀₀, of order 1, of order 2, and of Y₂₀, as in `shading.harmonics`.
 _FLAT, _FIRST = float(np.sqrt(1 / (4 * np.pi))), float(np.sqrt(3 / (4 * np.pi)))
 _SECOND, _ZONAL = float(np.sqrt(15 / (4 * np.pi))), float(np.sqrt(5 / (16 * np.pi)))
+
+
+def _combined(terms: tuple[tuple[Scalar, Vector], ...]) -> Array | None:
+    """Return the sum of the vectors times their coefficients; None if there are no terms."""
+    used = [jnp.asarray(axis) * scale for scale, axis in terms if not _is_zero(scale)]
+    return sum(used[1:], used[0]) if used else None
 
 
 def _is_zero(value: Scalar) -> bool:

@@ -31,6 +31,8 @@ from shading import (
 )
 
 NAMES = tuple(ambient_problems())
+# The most precise model has all that the others have, so these are slow tests.
+EACH = [pytest.param(name, marks=[] if name == NAMES[-1] else [pytest.mark.slow]) for name in NAMES]
 # The places of the arguments in a row
 NORMAL, VIEW, FIBER = slice(0, 3), slice(3, 6), slice(6, 9)
 ALPHA, DENSITY = 9, 10
@@ -55,13 +57,13 @@ def arguments(count=256):
 def test_code_in_c_passes():
     if toolchain("c").missing("float"):
         pytest.skip("gcc is missing")
-    calls = CallSequence((ambient_function("recommended"),), lambda rows: (rows,))
+    calls = CallSequence((ambient_function(NAMES[-1]),), lambda rows: (rows,))
     result = check(Trial(calls, arguments(), "float"), "c")
     assert result.status == "passed", result.reason
     assert result.form.not_finite == 0
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", EACH)
 def test_values_are_those_of_shading(name):
     """One row, composed of the functions of `shading` and of the tables, step by step."""
     row = arguments()[77]
@@ -92,7 +94,7 @@ def _turned(row, matrix):
     return new
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", EACH)
 def test_nothing_depends_on_the_frame_nor_on_the_sign_of_the_fibre(name):
     row = arguments()[100]
     matrix, _ = np.linalg.qr(np.random.default_rng(9).normal(size=(3, 3)))
@@ -104,7 +106,7 @@ def test_nothing_depends_on_the_frame_nor_on_the_sign_of_the_fibre(name):
     np.testing.assert_allclose(found[1:], found[[0, 0]], rtol=1e-10)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", EACH)
 def test_white_cloth_in_uniform_light_is_never_brighter_than_the_light(name):
     """1.02 is the excess that a fitted G may cause at grazing views of thin layers."""
     rows = arguments().copy()
@@ -116,7 +118,7 @@ def test_white_cloth_in_uniform_light_is_never_brighter_than_the_light(name):
     assert np.max(found[:, 0] + found[:, 3]) < 1.02
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", EACH)
 def test_values_are_finite_for_hostile_arguments(name):
     """Views below the horizon, vectors that are zero or too long, and any material and light."""
     rng = np.random.default_rng(3)
@@ -136,12 +138,13 @@ def test_values_are_finite_for_hostile_arguments(name):
     assert np.max(found[len(rows) :]) < 1.5
 
 
+@pytest.mark.slow
 def test_a_number_that_is_none_in_the_material_is_an_end_of_its_domain():
     if toolchain("c").missing("float"):
         pytest.skip("gcc is missing")
     rows = arguments()[[3, 3]].copy()
     rows[0, ALPHA] = rows[1, DENSITY] = np.nan
-    function = ambient_function("recommended")
+    function = ambient_function(NAMES[-1])
     # In C, a comparison with NaN is false. `run` would refuse the rows.
     found = toolchain("c").evaluate(write_source(function, "c"), function, rows, "float")
     assert np.isfinite(found).all()

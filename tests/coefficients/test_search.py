@@ -19,6 +19,20 @@ def of(folder, quantity: str = "q", budget: int | None = 5, **options) -> Search
     return Search(problem(quantity), options.pop("goal", GOAL), folder, budget, **options)
 
 
+def test_the_errors_of_a_table_that_was_made_before_are_not_believed(tmp_path):
+    entry = resolve("best/q-9")
+    form, table = entry.require_fitted().form, entry.require_table()
+    searched = of(tmp_path, goal=Goal(**table.goal.model_dump()), budget=None)
+    path = tmp_path / f"{searched.name_of(form)}.json"
+    path.write_text(search.serialise(table))
+    assert searched._made_before([form, problem("q").default]) == [table, None]
+    off_grid = table.errors.off_grid
+    flattered = off_grid.model_copy(update={"max": off_grid.max / 2, "rms": off_grid.rms / 2})
+    errors = table.errors.model_copy(update={"off_grid": flattered})
+    path.write_text(search.serialise(table.model_copy(update={"errors": errors})))
+    assert searched._made_before([form]) == [None]
+
+
 @pytest.mark.slow
 def test_a_search_finds_a_frontier_and_goes_on_where_it_stopped(tmp_path, monkeypatch):
     told = []

@@ -39,15 +39,9 @@ def trial(precision):
 
 
 CASES = [(key, kind) for key, spelled in LANGUAGES.items() for kind in spelled.types]
-# In float every language is alike, so the other precisions are slow tests, and CUDA, whose compiler
-# takes seconds for a file.
-MARKED = [
-    pytest.param(*case, marks=[pytest.mark.slow] if slow else [])
-    for case in CASES
-    for slow in (
-        case[0] == "cuda" or case[1] != ("double" if case[0] == "javascript" else "float"),
-    )
-]
+# The others are alike, and are slow tests.
+QUICK = (("c", "float"), ("glsl", "float"), ("python", "float"), ("javascript", "double"))
+MARKED = [pytest.param(*case, marks=[] if case in QUICK else [pytest.mark.slow]) for case in CASES]
 
 
 @pytest.mark.parametrize(("key", "precision"), MARKED)

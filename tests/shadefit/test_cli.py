@@ -85,7 +85,17 @@ def is_density(text):
         return False
 
 
-@pytest.mark.parametrize("name", REFERENCES)
+# The legs of the others take seconds to compile, and tests/integrals compares them.
+SLOW_TO_EVALUATE = ("ggx-directional-albedo", "r", "g", "skin-cylinder-red")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name in SLOW_TO_EVALUATE else name
+        for name in REFERENCES
+    ],
+)
 def test_evaluate_gives_every_leg_within_its_error(capsys, name):
     status, out, _ = run(capsys, "evaluate", name, *POINTS[name], "--json")
     assert status == 0

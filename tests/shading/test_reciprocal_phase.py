@@ -17,7 +17,7 @@ from shading import (
 from shading.fuzz import phase
 
 COSINES = np.linspace(0, 1, 33)
-ROUGHNESSES = (0.05, 0.1, 0.2236, 0.447, 0.7071, 0.9)
+ROUGHNESSES = (0.05, 0.2236, 0.447, 0.9)
 # The largest relative error of the fit is 0.0134.
 BOUND = 0.0135
 
