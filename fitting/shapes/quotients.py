@@ -42,7 +42,7 @@ class Quotients:
         denominator = 1 + c[:, split:] @ x[: self.below]
         if self.least is not None:
             denominator = jnp.maximum(denominator, self.least)
-        return np.array(self.offset) + factor * numerator / denominator
+        return jnp.array(self.offset) + factor * numerator / denominator
 
     def positive(self, coefficients: Array | np.ndarray, *point) -> Array:
         """Return the denominator at one point, or the least of the rows' denominators."""

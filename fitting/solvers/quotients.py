@@ -46,7 +46,7 @@ def fit_quotients(
 
     Call this inside a function that is compiled by `jax.jit`.
     """
-    split, offset = shape.above + 1, np.asarray(shape.offset)
+    split, offset = shape.above + 1, jnp.asarray(shape.offset)
     numerator, features, factor = shape.columns(jnp.asarray(points))
     penalty_features = shape.columns(penalised)[1]
     rows = targets.shape[1:]
