@@ -18,8 +18,10 @@ NAME = "shadefit"
 # Behind the name of a published table: the table as it is printed, without corrections.
 AS_PRINTED = "@printed"
 EXACT = "exact"
+# The first part of the names of ambient functions, which use tables
+AMBIENT = "ambient"
 # The first parts of the names of functions that are exported, but not fitted.
-FUNCTIONS = ("sampler", "decode", "detail", "curvature")
+FUNCTIONS = ("sampler", "decode", "detail", "curvature", AMBIENT)
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}

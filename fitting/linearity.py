@@ -156,6 +156,8 @@ def _division(one: Any, other: Any) -> _Quotient:
     if right.below is not _ONE:
         raise _NotLinear
     if not right.above.slopes:
+        if right.above.constant == 0:
+            raise _NotLinear
         return _Quotient(left.above.scaled(1 / right.above.constant), left.below)
     if left.below is _ONE:
         return _Quotient(left.above, right.above)

@@ -2,7 +2,6 @@
 
 import functools
 import inspect
-import os
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
@@ -32,6 +31,7 @@ from shadefit.commands.report import report
 from shadefit.commands.search import search
 from shadefit.commands.verify import verify
 from shadefit.encoding import install, visible
+from shadefit.environment import settle
 from shadefit.standard_streams import READER_GONE, OutputError, end, end_without_output
 
 # Characters; a path may have this many.
@@ -115,7 +115,11 @@ _add(
     "shadefit curvature hand.glb --unit m --widths none --json",
 )
 _add("new", new, "Example: shadefit new fresnel --axes eta=1:3")
-_add("search", search, "Example: shadefit search q --budget 12 --max-error 2e-5")
+_add(
+    "search",
+    search,
+    "Examples: shadefit search q --budget 12 --max-error 2e-5; shadefit search ps --jobs 8",
+)
 _add("compare", compare, "Example: shadefit compare ps my/table.json --json")
 _add(
     "evaluate",
@@ -183,10 +187,7 @@ def _global(
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line. Bad input gives one line on standard error and exit status 2."""
-    # The references need float64. A setting of the environment is overwritten.
-    os.environ["JAX_ENABLE_X64"] = "1"
-    # With more threads, the order of sums, and so their last digits, would depend on the machine.
-    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    settle()
     install()
     given = sys.argv[1:] if arguments is None else arguments
     try:

@@ -1,11 +1,13 @@
 """What the commands print: tables on a terminal, and JSON."""
 
 import json
+import math
 import shutil
 import sys
 from collections.abc import Generator
 from contextlib import contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
+from typing import Any
 
 from pydantic import BaseModel
 from rich.console import Console
@@ -19,6 +21,8 @@ from shadefit.layout import RULE, laid_out, wrapped
 _UNLIMITED = 10_000
 # In a terminal notes are not wider than this, because long lines are hard to read.
 _WIDEST_NOTE = 100
+# What a number is that JSON does not have
+NOT_FINITE = {"inf": "infinity", "-inf": "-infinity", "nan": "no number"}
 
 
 @contextmanager
@@ -35,9 +39,30 @@ def print_lines(*lines: object) -> None:
 
 
 def print_json(output: BaseModel) -> None:
-    """Print one JSON object. Numbers have all digits that are needed to read them back exactly."""
+    """Print one JSON object. Numbers have all digits that are needed to read them back exactly.
+
+    A number that is not finite is null, and `not_finite` says what it is.
+    """
     value = output.model_dump(mode="json", by_alias=True)
+    value.pop("not_finite", None)
+    reasons: dict[str, str] = {}
+    value = _finite(value, "", reasons)
+    if reasons:
+        value["not_finite"] = reasons
     print(shown_json(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False)))
+
+
+def _finite(value: Any, place: str, reasons: dict[str, str]) -> Any:
+    """Replace numbers that are not finite by None, and add what they are to `reasons`."""
+    if isinstance(value, dict):
+        start = f"{place}." if place else ""
+        return {key: _finite(each, f"{start}{key}", reasons) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_finite(each, f"{place}[{k}]", reasons) for k, each in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        reasons[place] = NOT_FINITE[str(value)]
+        return None
+    return value
 
 
 def print_table(

@@ -62,7 +62,7 @@ def refit(
     grid: Annotated[
         int | None,
         typer.Option(
-            help="Nodes along each axis of the grid, 9 to 129; by default 65. best/NAME, and a "
+            help="Nodes along each axis of the grid, 9 to 1025; by default 65. best/NAME, and a "
             "user's quantity by default, are fitted to scattered points instead."
         ),
     ] = None,
