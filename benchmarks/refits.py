@@ -23,7 +23,8 @@ MARK = "<!-- made by make bench: {} -->"
 LEFT_OUT = (
     "Left out by NumPy and SciPy: the joint fit of P_s (its six surfaces are fitted one by one), "
     "errors off the grid and the search for the largest, error bounds of the exact values, proofs "
-    "that there is no pole, bounds of the values, the files. Left out by shadefit: nothing."
+    "that there is no pole, bounds of the values, the files. Left out by shadefit: its joint fit "
+    "of P_s uses 17×17 of the 65×65 materials, and measures the errors at all of them."
 )
 
 

@@ -43,6 +43,12 @@ class LinearParts:
         """Whether the denominator has no coefficient."""
         return not np.any(self.b)
 
+    def values_and_slopes(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the values (n,) for coefficients c, and their derivatives (n, coefficients)."""
+        below = self.b0 + self.b @ c
+        values = (self.a0 + self.a @ c) / below
+        return values, (self.a - values[:, None] * self.b) / below[:, None]
+
 
 @functools.lru_cache(maxsize=64)
 def program_of(form: Form) -> Program:

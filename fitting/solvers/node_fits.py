@@ -42,7 +42,7 @@ class NodeFits:
 
 @dataclass(frozen=True)
 class NodeErrors:
-    """The errors of given results of the first stage.
+    """The errors of a form.
 
     `squares` (a, t) has the mean square error at every node. `largest` is the largest absolute
     error, and `where` its point, with a value for each axis of the form.
@@ -91,16 +91,14 @@ class Nodes:
             found.factors[t], found.residuals[a, t] = factors[:wide], residuals[:wide, :tall].T
         return found
 
-    def errors(self, results: np.ndarray) -> NodeErrors:
-        """Return the errors of results (a, t, m) of the first stage."""
-        squares = np.empty(results.shape[:2])
+    def errors(self, coefficients: np.ndarray | Array) -> NodeErrors:
+        """Return the errors of the form with these coefficients."""
+        squares = np.empty((len(self.firsts), len(self.seconds)))
         largest, where = -np.inf, np.empty(0)
         compared = _compared_often if squares.size >= MANY else _compared
         for a, t, firsts, seconds in self._blocks():
-            rows = np.swapaxes(results[a, t], 0, 1)
-            rows = _filled(_filled(rows, 0, BLOCK[1]), 1, BLOCK[0])
             given = self.form, self.exact
-            block = compared(*given, firsts, seconds, self.inner, self.weights, rows)
+            block = compared(*given, firsts, seconds, self.inner, self.weights, coefficients)
             tall, wide = a.stop - a.start, t.stop - t.start
             square, size, index = (np.asarray(each)[:wide, :tall] for each in block)
             squares[a, t] = square.T
@@ -157,13 +155,15 @@ def _solved(form: Form, exact: Callable[..., Array], count: int, firsts, seconds
     return jax.lax.map(at_node, seconds)
 
 
-def _differences(form: Form, exact: Callable[..., Array], firsts, seconds, inner, weights, results):
+def _differences(
+    form: Form, exact: Callable[..., Array], firsts, seconds, inner, weights, coefficients
+):
     """Return mean square errors, largest errors and their inner points' numbers, (t, a) each."""
     second, numbers = form.stages[1].call, jnp.arange(len(inner))
 
-    def at_node(given):
-        node, rows = given
+    def at_node(node):
         inputs = _inputs(form, node, inner)
+        rows = jax.vmap(lambda first: form.first(coefficients, first, node))(firsts)
 
         # One node of the first axis at a time, so that its values stay in the fastest cache.
         def at_first(given):
@@ -177,7 +177,7 @@ def _differences(form: Form, exact: Callable[..., Array], firsts, seconds, inner
 
         return jax.lax.map(at_first, (firsts, rows))
 
-    return jax.lax.map(at_node, (seconds, results))
+    return jax.lax.map(at_node, seconds)
 
 
 _compared = jit_for_few_calls(_differences, static=(0, 1))

@@ -1,6 +1,7 @@
 """A search among forms: what is tried, kept, refused and named."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -11,8 +12,11 @@ from coefficients.table import read
 from coefficients.workers import Cluster, LocalProcesses
 from fitting import Goal
 from quantities import problem
+from quantities.loader import load_problems
+from quantities.registry import unregister
 
 GOAL = Goal("l2", rounding="float32")
+EXAMPLE = Path(__file__).parents[2] / "examples" / "soft_step.py"
 
 
 def of(folder, quantity: str = "q", budget: int | None = 5, **options) -> Search:
@@ -180,13 +184,19 @@ def test_refusals_of_other_processes_are_kept(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_processes_and_a_cluster_give_the_files_of_one_process(tmp_path):
     distributed = pytest.importorskip("distributed")
-    folders = [tmp_path / each for each in ("alone", "processes", "cluster")]
-    of(folders[0], budget=4).run()
-    of(folders[1], budget=4).run(workers=LocalProcesses(2))
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, dashboard_address=None
-    ) as cluster:
-        of(folders[2], budget=4).run(workers=Cluster(cluster.scheduler_address))
-    alone, *others = map(files_of, folders)
-    assert len(alone) >= 2
-    assert others == [alone, alone]
+    (owner,) = load_problems(str(EXAMPLE))
+
+    def run(folder, workers=None):
+        Search(owner, GOAL, tmp_path / folder).run(workers=workers)
+        return files_of(tmp_path / folder)
+
+    try:
+        alone = run("alone")
+        assert len(alone) >= 2
+        assert run("processes", LocalProcesses(2)) == alone
+        with distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None
+        ) as cluster:
+            assert run("cluster", Cluster(cluster.scheduler_address)) == alone
+    finally:
+        unregister(owner.name)
