@@ -1,7 +1,8 @@
 """Measure speed as ratios within one run: `python benchmarks/run.py [--json]`.
 
-(a) The time of `shadefit refit all` at 65×65 from a cold start, imports and compilation included,
-compared with that of the same task in plain NumPy and SciPy (plain_scipy.py). (b) The evaluations
+(a) The processor time of `shadefit refit ps g q r` at 65×65 without a cache, imports and
+compilation included, compared with that of the same task in plain NumPy and SciPy without closed
+forms (plain_scipy.py); refits.py compares with a script that knows them. (b) The evaluations
 per second of P_s by its closed form, compared with quadrature of its definition. (c) The time until
 commands that need no JAX have ended, compared with that of an empty Python program.
 """
@@ -9,7 +10,6 @@ commands that need no JAX have ended, compared with that of an empty Python prog
 import argparse
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import time
@@ -20,6 +20,7 @@ import jax.numpy as jnp
 import numpy as np
 from plain_scipy import directions, lights_of, views
 from plain_scipy import scattered_fraction as by_numpy
+from processes import run
 
 from coefficients.catalogue import resolve
 from fitting.points.grids import trapezoid_grid
@@ -37,31 +38,15 @@ from quantities.fuzz.supplement import RATIONAL_PS, RATIONAL_R
 
 HERE = Path(__file__).parent
 CELLS = 5
-THREADS = {"OPENBLAS_NUM_THREADS": "1"}
 
 
-def timed(command: list[str]) -> tuple[float, float, float, str]:
-    """Run a command. Returns wall and processor time in s, peak memory in MiB, and the output."""
-    with tempfile.TemporaryFile("w+") as output:
-        clock = time.perf_counter()
-        child = subprocess.Popen(command, stdout=output, env={**os.environ, **THREADS})
-        _, status, usage = os.wait4(child.pid, 0)
-        wall = time.perf_counter() - clock
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode:
-            raise SystemExit(f"{command[0]} {command[1]} ended with {child.returncode}")
-        output.seek(0)
-        text = output.read()
-    return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text
-
-
-def refit_all(folder: Path) -> dict:
+def refit(folder: Path) -> dict:
     code = "from shadefit.cli import main; main()"
-    command = [sys.executable, "-c", code, "refit", "all", "--out", str(folder), "--json"]
-    wall, processor, memory, text = timed(command)
-    tables = json.loads(text)["tables"]
+    names = ["ps", "g", "q", "r"]
+    found = run([sys.executable, "-c", code, "refit", *names, "--out", str(folder), "--json"])
+    tables = json.loads(found.output)["tables"]
     rms = {table["quantity"]: table["errors"]["rms"] for table in tables}
-    return {"seconds": wall, "processor_seconds": processor, "mebibytes": memory, "rms": rms}
+    return {"seconds": found.processor, "mebibytes": found.mebibytes, "rms": rms}
 
 
 def surfaces(path: Path) -> None:
@@ -89,14 +74,14 @@ def surfaces(path: Path) -> None:
 
 def plain(path: Path) -> dict:
     command = [sys.executable, str(HERE / "plain_scipy.py"), str(path), "--cells", str(CELLS)]
-    wall, _, memory, text = timed(command)
-    found = json.loads(text)
+    measured = run(command)
+    found = json.loads(measured.output)
     # The difference is the extrapolated time of the cells that were not computed.
     rest = sum(found["seconds"].values()) - found["measured"]
     return {
-        "seconds": wall + rest,
-        "measured_seconds": wall,
-        "mebibytes": memory,
+        "seconds": measured.processor + rest,
+        "measured_seconds": measured.processor,
+        "mebibytes": measured.mebibytes,
         "parts": found["seconds"],
         "notes": found["notes"],
     }
@@ -155,7 +140,7 @@ def startup(repeat: int = 7) -> dict:
         "shadefit list": ["-c", command, "list"],
     }
     return {
-        name: min(timed([sys.executable, *arguments])[0] for _ in range(repeat))
+        name: min(run([sys.executable, *arguments]).wall for _ in range(repeat))
         for name, arguments in programs.items()
     }
 
@@ -163,8 +148,11 @@ def startup(repeat: int = 7) -> dict:
 def show(found: dict) -> None:
     ours, theirs = found["refit"], found["plain"]
     print(f"load average at the start {found['load']:.2f} on {os.cpu_count()} processors\n")
-    print(f"{'(a) all four tables, 65×65, cold start':<50} {'seconds':>10} {'MiB':>6}")
-    for name, side in (("shadefit refit all", ours), ("plain NumPy/SciPy, extrapolated", theirs)):
+    print(f"{'(a) the four tables of the paper, 65×65':<50} {'CPU s':>10} {'MiB':>6}")
+    for name, side in (
+        ("shadefit refit ps g q r", ours),
+        ("NumPy and SciPy, no closed forms, extrapolated", theirs),
+    ):
         print(f"    {name:<46} {side['seconds']:>10.1f} {side['mebibytes']:>6.0f}")
     print(f"    {'ratio':<46} {found['ratio']:>10.1f}")
     print("    of the plain side:")
@@ -189,7 +177,7 @@ def main() -> None:
     jax.config.update("jax_enable_x64", True)
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
-        ours = refit_all(Path(folder))
+        ours = refit(Path(folder))
         surfaces(Path(folder) / "surfaces.npz")
         theirs = plain(Path(folder) / "surfaces.npz")
     found = {

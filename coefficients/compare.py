@@ -1,5 +1,6 @@
 """Comparisons of tables: the errors of each at the same points."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -57,13 +58,20 @@ def compare(labelled: Sequence[tuple[str, Entry]]) -> Comparison:
             label,
             entry.require_table(),
             e,
-            e.rms / errors[0].rms,
-            e.largest / errors[0].largest,
+            _ratio(e.rms, errors[0].rms),
+            _ratio(e.largest, errors[0].largest),
         )
         for (label, entry), e in zip(labelled, errors, strict=True)
     )
     apart = measure(values[-1] - values[0], points, domain)
     return Comparison(quantities.pop(), domain, contestants, apart.largest, apart.where)
+
+
+def _ratio(error: float, first: float) -> float:
+    """Return the ratio of two errors, which may be 0: that of equal errors is 1."""
+    if first == 0:
+        return 1.0 if error == 0 else math.inf
+    return error / first
 
 
 def coefficient_rows(comparison: Comparison) -> list[tuple[str, list[float]]]:

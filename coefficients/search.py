@@ -1,31 +1,29 @@
 """A search among forms: the candidates are fitted in turn, and their tables are kept in a folder.
 
 A candidate's table is written as soon as it is fitted. A later run with the same folder reads it
-instead of fitting again, so that an interrupted search continues where it stopped.
+instead of fitting again, so that an interrupted search continues where it stopped. Candidates may
+be fitted in several processes; only the process that runs the search writes.
 """
 
-import hashlib
-import itertools
-import json
-import shlex
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from coefficients.catalogue import Entry, entries, published, resolve
+from coefficients.candidates import candidates, fit_candidate, name_of
+from coefficients.catalogue import Entry, published, resolve
 from coefficients.exported_code import operations_of
+from coefficients.expression import require_same
 from coefficients.files import write_whole
 from coefficients.frontier import best_so_far, closed_form
 from coefficients.packaged import EXACT, Kind
-from coefficients.record import table_of
-from coefficients.table import Table, read, serialise
+from coefficients.search_tasks import fit_task, task_of
+from coefficients.stated_errors import misstatements
+from coefficients.table import Table, parse, read, serialise
+from coefficients.workers import Workers
 from fitting import Form, Goal, common_domain, judge
-from fitting.fit import fit
-from fitting.linearity import program_of
 from quantities import Problem
-from quantities.loader import option_for
 
 # Takes what is done now, the number of candidates that were tried, and the number of all to try.
 Progress = Callable[[str, int, int], None]
@@ -87,18 +85,25 @@ class Search:
     budget: int | None = None
     lower: Mapping[str, float] | None = None
 
-    def run(self, progress: Progress = lambda *_: None) -> Result:
+    def run(self, progress: Progress = lambda *_: None, workers: Workers | None = None) -> Result:
         """Fit every candidate within the budget. Raises ValueError if no fit succeeds.
 
         `progress` is called with what is done now, the number of candidates that were tried in this
-        run, and the number of those to try. Candidates of an earlier run do not count.
+        run, and the number of those to try. Candidates of an earlier run do not count. `workers`
+        fit several candidates at a time; what is found and written is the same without them.
         """
         found: list[Found] = []
         refused, tried, last = 0, 0, None
         # Operations are counted without a fit, so that forms beyond the budget cost no time.
         chosen = [form for form in self.candidates() if self._is_within_budget(form)]
-        made = [self._made_before(form) for form in chosen]
+        made = self._made_before(chosen)
         settled = [self._refusal(form).is_file() for form in chosen]
+        if workers is not None:
+            pairs = zip(chosen, settled, made, strict=True)
+            to_fit = [form for form, no, yes in pairs if not no and yes is None]
+            self._fit_all(to_fit, progress, workers)
+            made = self._made_before(chosen)
+            settled = [self._refusal(form).is_file() for form in chosen]
         total = sum(not no and yes is None for no, yes in zip(settled, made, strict=True))
         for form, no, before in zip(chosen, settled, made, strict=True):
             if no:
@@ -128,27 +133,11 @@ class Search:
 
     def candidates(self) -> Iterator[Form]:
         """Yield the forms to try. If `owner.searches_best`, those of best tables come first."""
-        lower = self.lower or {}
-        tried = self.owner.tried(lower)
-        if not self.owner.searches_best:
-            return tried
-        known = [e.require_fitted().form for e in entries(self.owner) if e.kind == "best"]
-        same = [
-            form
-            for form in known
-            if all(axis.lower == lower.get(axis.name, axis.lower) for axis in form.axes)
-        ]
-        return itertools.chain(same, tried)
+        return candidates(self.owner, self.lower or {})
 
     def name_of(self, form: Form) -> str:
-        """Return a candidate's name: its family and a digest of its shape and goal.
-
-        It is the same in every run, so that its table is found again.
-        """
-        # A form without a shape is told by what it computes: a user may change it under its name.
-        shape = repr(program_of(form).steps) if form.shape is None else form.shape
-        text = json.dumps([shape, asdict(self.goal)], sort_keys=True)
-        return f"{form.name}-{hashlib.sha256(text.encode()).hexdigest()[:10]}"
+        """Return a candidate's name, which is the same in every run, so that its table is found."""
+        return name_of(form, self.goal)
 
     def _is_within_budget(self, form: Form) -> bool:
         return self.budget is None or self._blank_cost(form) <= self.budget
@@ -162,14 +151,31 @@ class Search:
         blank = form.fitted(0.37 + 0.013 * np.arange(form.size))
         return operations_of(Entry("blank", "file", self.owner, None, blank))
 
-    def _made_before(self, form: Form) -> Table | None:
+    def _made_before(self, forms: Sequence[Form]) -> list[Table | None]:
+        """Return the table of each form that an earlier run made, or None.
+
+        A table is not believed: if it states an error that is not its own, its form is fitted anew.
+        """
+        read = [self._read_before(form) for form in forms]
+        kept = [(form, table) for form, table in zip(forms, read, strict=True) if table is not None]
+        tables = [(form.fitted(np.array(table.coefficients)), table) for form, table in kept]
+        wrong = iter(misstatements(self.owner.reference, tables))
+        return [None if table is None or next(wrong) is not None else table for table in read]
+
+    def _read_before(self, form: Form) -> Table | None:
         path = self.out / f"{self.name_of(form)}.json"
         if not path.is_file():
             return None
         table = read(path)
         made_for = Goal() if table.goal is None else Goal(**table.goal.model_dump())
         same = (table.form, table.shape, made_for) == (form.name, form.shape, self.goal)
-        return table if same and table.errors is not None else None
+        if not same or table.errors is None or table.size != form.size:
+            return None
+        try:
+            require_same(table, form)
+        except ValueError:
+            return None
+        return table
 
     def _refusal(self, form: Form) -> Path:
         """Return the file that says why a candidate was refused. If it exists, no fit is tried."""
@@ -177,16 +183,25 @@ class Search:
 
     def _fitted(self, form: Form, tell: Callable[[str], None]) -> Table | None:
         """Fit a candidate and write its table. If it is refused, write why and return None."""
-        name = self.name_of(form)
-        try:
-            made = fit(form, self.goal, progress=tell)
-        except ValueError as error:
-            write_whole(self._refusal(form), f"{error}\n")
-            return None
-        command = shlex.join(["shadefit", "search", *option_for(self.owner), self.owner.name])
-        table = table_of(made, command, name)
-        write_whole(self.out / f"{name}.json", serialise(table))
-        return table
+        outcome = fit_candidate(self.owner, form, self.goal, tell)
+        self._write(form, outcome)
+        return outcome if isinstance(outcome, Table) else None
+
+    def _write(self, form: Form, outcome: Table | str) -> None:
+        if isinstance(outcome, str):
+            write_whole(self._refusal(form), f"{outcome}\n")
+        else:
+            write_whole(self.out / f"{self.name_of(form)}.json", serialise(outcome))
+
+    def _fit_all(self, forms: list[Form], progress: Progress, workers: Workers) -> None:
+        """Fit candidates by workers, and write each table when it is ready."""
+        known = {self.name_of(form): form for form in forms}
+        tasks = [task_of(self.owner, name, self.goal, self.lower or {}) for name in known]
+        progress("fits side by side", 0, len(tasks))
+        for done, (task, outcome) in enumerate(workers.results(fit_task, tasks), start=1):
+            form = known[task.name]
+            self._write(form, parse(outcome.text, task.name) if outcome.fitted else outcome.text)
+            progress(f"{form.name} is done", done, len(tasks))
 
     def _found(self, form: Form, table: Table) -> Found:
         errors = table.errors

@@ -74,9 +74,28 @@ class Table(Part):
         if self.schema_ == SCHEMA and self.expression is None:
             raise ValueError("expression is missing")
         names = {each.name for each in self.arguments}
+        if len(names) < len(self.arguments):
+            raise ValueError("arguments: a name is there twice")
+        self._require_own(names)
         if self.about is not None and set(self.about.arguments) != names:
             raise ValueError("about.arguments: expected is a name for each argument")
         return self
+
+    def _require_own(self, names: set[str]) -> None:
+        """Raise ValueError for a place or nodes of arguments that the table does not have."""
+        proven = self.certificates.largest_error if self.certificates else None
+        places = {"certificates.largest_error.at": proven.at} if proven else {}
+        if self.errors is not None:
+            places["errors.on_grid.where"] = self.errors.on_grid.where
+            places["errors.off_grid.where"] = self.errors.off_grid.where
+        for what, place in places.items():
+            if set(place) != names:
+                raise ValueError(f"{what}: expected is a number for each argument")
+        nodes = [each.argument for each in self.grid.nodes] if self.grid else []
+        if len(set(nodes)) < len(nodes) or not set(nodes) <= names:
+            raise ValueError("grid.nodes: expected are nodes of different arguments of the table")
+        if self.publication is not None and not set(self.publication.clamps) <= names:
+            raise ValueError("publication.clamps: expected are arguments of the table")
 
     @property
     def size(self) -> int:

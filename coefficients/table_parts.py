@@ -1,8 +1,9 @@
 """The parts of a table: its arguments, errors, proofs and origin. This module needs no JAX."""
 
+import unicodedata
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from fitting.goal import Norm, Rounding, Side
 
@@ -14,7 +15,21 @@ Positive = Annotated[Number, Field(gt=0)]
 # Text is shown on terminals and in comments of code. It must not have control codes, line breaks,
 # characters without width, or characters that change the direction of writing.
 UNSEEN = r"\x00-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff"
-Text = Annotated[str, Field(max_length=2000, pattern=f"^[^{UNSEEN}]*$")]
+# Letters, marks and signs that show nothing either
+BLANK = "\u034f\u115f\u1160\u17b4\u17b5\u180b\u180c\u180d\u180f\u2800\u3164\uffa0"
+
+
+def _visible(text: str) -> str:
+    for character in text:
+        # Control and format characters, surrogates, and variation selectors
+        kind, code = unicodedata.category(character), ord(character)
+        selector = 0xFE00 <= code <= 0xFE0F or 0xE0100 <= code <= 0xE01EF
+        if kind in ("Cc", "Cf", "Cs") or character in BLANK or selector:
+            raise ValueError(f"character U+{code:04X} cannot be seen")
+    return text
+
+
+Text = Annotated[str, Field(max_length=2000, pattern=f"^[^{UNSEEN}]*$"), AfterValidator(_visible)]
 Name = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$")]
 # In the JSON Schema: no keys are allowed that do not match the pattern of the keys.
 _CLOSED = Field(json_schema_extra={"additionalProperties": False})
@@ -156,6 +171,13 @@ class ErrorRecord(Part):
     max: Annotated[Number, Field(ge=0)]
     where: Annotated[dict[Text, Number], _CLOSED]
     points: Annotated[int, Field(ge=1)]
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        # The two are equal if all errors are; then either may be rounded up.
+        if not self.rms <= self.max * (1 + 1e-12):
+            raise ValueError(f"the rms error {self.rms} is above the largest error {self.max}")
+        return self
 
 
 class ErrorRecords(Part):

@@ -93,7 +93,8 @@ def measure(
     """
     worst = int(np.argmax(np.abs(difference)))
     where = {axis.name: float(x) for axis, x in zip(domain.axes, points[worst], strict=True)}
-    rms = float(np.sqrt(np.average(difference**2, weights=weights)))
+    with np.errstate(over="ignore"):
+        rms = float(np.sqrt(np.average(difference**2, weights=weights)))
     return Errors(rms, float(np.abs(difference[worst])), where, len(points))
 
 

@@ -24,8 +24,8 @@ from programs.bounding.denominators import DenominatorBound
 # 5 nodes an axis or fewer do not determine the 27 coefficients of a row of Eq. (2). 9 nodes give 81
 # values, three for each coefficient.
 MIN_NODES = 9
-# At 129 nodes an axis the exact values of P_s take 0.3 GB: 129² materials, 2,304 lights each.
-MAX_NODES = 129
+# At 1025 nodes an axis there are 2.4e9 exact values of P_s: 1025² materials, 2,304 lights each.
+MAX_NODES = 1025
 # After a fit to scattered points, the search for a lower bound of the denominators ends once it has
 # proven this one: that there is no pole is shown by any positive bound.
 ENOUGH = 1e-6

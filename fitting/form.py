@@ -139,9 +139,10 @@ class Form:
 
     def fitted(self, coefficients: Array | np.ndarray) -> "FittedForm":
         """Return the form with these coefficients, given in their shape or as a flat array."""
-        # NumPy reshapes what is no array of JAX, for which JAX would compile a program.
-        flat = coefficients if isinstance(coefficients, Array) else np.asarray(coefficients)
-        return FittedForm(self, jnp.asarray(flat.reshape(self.coefficient_shape)))
+        if np.size(coefficients) == self.size and not isinstance(coefficients, Array):
+            # JAX would compile a program that reshapes.
+            coefficients = np.reshape(coefficients, self.coefficient_shape)
+        return FittedForm(self, jnp.asarray(coefficients).reshape(self.coefficient_shape))
 
 
 def plain_form(

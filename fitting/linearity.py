@@ -43,6 +43,12 @@ class LinearParts:
         """Whether the denominator has no coefficient."""
         return not np.any(self.b)
 
+    def values_and_slopes(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the values (n,) for coefficients c, and their derivatives (n, coefficients)."""
+        below = self.b0 + self.b @ c
+        values = (self.a0 + self.a @ c) / below
+        return values, (self.a - values[:, None] * self.b) / below[:, None]
+
 
 @functools.lru_cache(maxsize=64)
 def program_of(form: Form) -> Program:
@@ -156,6 +162,8 @@ def _division(one: Any, other: Any) -> _Quotient:
     if right.below is not _ONE:
         raise _NotLinear
     if not right.above.slopes:
+        if right.above.constant == 0:
+            raise _NotLinear
         return _Quotient(left.above.scaled(1 / right.above.constant), left.below)
     if left.below is _ONE:
         return _Quotient(left.above, right.above)

@@ -12,7 +12,11 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import Device
 
+from integrals.along_lines import estimates_along_lines
+from integrals.compilation import jit_for_few_calls
+from integrals.devices import all_devices, spread
 from integrals.reference import Estimate, Reference, in_batches
 
 # A quantity with smaller batches has so many nodes at a point that one point fills the cache.
@@ -31,6 +35,14 @@ def estimates_at_many(reference: Reference, points: np.ndarray) -> Estimate:
         return Estimate(jnp.zeros(0), jnp.zeros(0))
     if reference.batch >= _SMALL_BATCH:
         return reference.estimates(points)
+    exact = functools.partial(_in_groups, reference)
+    if reference.smooth_along is not None:
+        return estimates_along_lines(reference, points, exact)
+    return exact(points)
+
+
+def _in_groups(reference: Reference, points: np.ndarray) -> Estimate:
+    """Evaluate points (n, axes), with n > 0; those with the same needs together."""
     order = np.lexsort(points.T[::-1])
     groups: dict[tuple[tuple[str, Any], ...], list[np.ndarray]] = {}
     for first in range(0, len(points), _BLOCK):
@@ -40,15 +52,20 @@ def estimates_at_many(reference: Reference, points: np.ndarray) -> Estimate:
     value, error = np.empty(len(points)), np.empty(len(points))
     for options, blocks in groups.items():
         index = np.concatenate(blocks)
-        one_by_one = _one_by_one(reference, options)
-        found = in_batches(one_by_one, points[index], _AT_ONCE)
+        devices = all_devices()
+        one_by_one = _one_by_one(reference, options, devices)
+        found = in_batches(one_by_one, points[index], _AT_ONCE * len(devices))
         value[index], error[index] = np.asarray(found.value), np.asarray(found.error)
     return Estimate(jnp.asarray(value), jnp.asarray(error))
 
 
 @functools.lru_cache(maxsize=16)
 def _one_by_one(
-    reference: Reference, options: tuple[tuple[str, Any], ...]
+    reference: Reference, options: tuple[tuple[str, Any], ...], devices: tuple[Device, ...]
 ) -> Callable[[np.ndarray], Estimate]:
     leg = reference.legs[reference.best_leg]
-    return jax.jit(lambda points: jax.lax.map(lambda x: leg(*x, **dict(options)), points))
+
+    def evaluate(points):
+        return jax.lax.map(lambda x: leg(*x, **dict(options)), points)
+
+    return jit_for_few_calls(spread(evaluate, devices))

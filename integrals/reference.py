@@ -9,10 +9,11 @@ from typing import Any, Literal, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, Device
 
 from integrals.compilation import jit_for_few_calls
 from integrals.data import Data
+from integrals.devices import all_devices, spread
 from integrals.sampling import Sampling
 
 # How points are distributed along an axis: evenly, evenly in the logarithm, or as the squares of
@@ -141,6 +142,8 @@ class Reference:
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
     `proof_options` are arguments for proofs, which need few but more exact values.
     `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
+    `smooth_along` is the name of an axis along which many values may be interpolated
+    (`integrals.along_lines`); None: none is.
 
     A quantity that is only known by its `data` has no leg: it has values at the data's own points.
     A quantity that is only known by a table has neither legs nor data.
@@ -160,6 +163,7 @@ class Reference:
     proof_options: Mapping[str, Any] = field(default_factory=dict)
     codomain: tuple[float | int, float | int] = (0.0, 1.0)
     data: Data | None = None
+    smooth_along: str | None = None
 
     @property
     def legs(self) -> dict[str, Leg]:
@@ -198,29 +202,52 @@ class Reference:
         """
         more = self.proof_options if for_proof else {}
         options = tuple({**self.options_at(points), **more}.items())
-        return in_batches(functools.partial(_estimates, self, options), points, self.batch)
+        devices = all_devices()
+        evaluate = functools.partial(_estimates, self, options, devices)
+        return in_batches(evaluate, points, self.batch * len(devices))
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Evaluate the most exact leg at points (n, axes). Returns the values (n,)."""
         return np.asarray(self.estimates(points).value)
 
 
-@jit_for_few_calls(static=(0, 1))
-def _estimates(reference: Reference, options: tuple[tuple[str, Any], ...], points) -> Estimate:
+@jit_for_few_calls(static=(0, 1, 2))
+def _estimates(
+    reference: Reference,
+    options: tuple[tuple[str, Any], ...],
+    devices: tuple[Device, ...],
+    points: Array,
+) -> Estimate:
     leg = reference.legs[reference.best_leg]
-    return jax.vmap(lambda x: leg(*x, **dict(options)))(points)
+    return spread(jax.vmap(lambda x: leg(*x, **dict(options))), devices)(points)
+
+
+class Batches:
+    """Points (n, axes), with n > 0, in batches of one size, so that JAX compiles a function once.
+
+    The last batch is filled with copies of the last point. The batches are on the device, for any
+    number of functions that are evaluated at them.
+    """
+
+    def __init__(self, points: np.ndarray, batch: int) -> None:
+        self.count = len(points)
+        filled = np.concatenate([points, np.repeat(points[-1:], -self.count % batch, axis=0)])
+        self._parts = [
+            jax.device_put(filled[first : first + batch]) for first in range(0, self.count, batch)
+        ]
+
+    def evaluate(self, function: Callable):
+        """Return the arrays (batch, …) that `function` returns for each batch, joined to (n, …)."""
+        parts = [function(each) for each in self._parts]
+        return jax.tree.map(lambda *each: np.concatenate(each)[: self.count], *parts)
 
 
 def in_batches(function: Callable, points: np.ndarray, batch: int):
     """Apply `function` to points (n, axes), with n > 0, in batches of `batch` points.
 
-    All batches have the same size, so that JAX compiles `function` once: the last one is filled
-    with copies of the last point. Returns the arrays that `function` returns, joined to (n, …).
+    Returns the arrays that `function` returns, joined to (n, …).
     """
-    count = len(points)
-    padded = np.concatenate([points, np.repeat(points[-1:], -count % batch, axis=0)])
-    parts = [function(padded[first : first + batch]) for first in range(0, count, batch)]
-    return jax.tree.map(lambda *each: jax.device_put(np.concatenate(each)[:count]), *parts)
+    return jax.tree.map(jax.device_put, Batches(points, batch).evaluate(function))
 
 
 def leg(*axes: Axis) -> Callable[[Leg], Leg]:

@@ -12,6 +12,8 @@ evaluated: `jax.config.update("jax_enable_x64", True)`.
 * Exact values: `PS`, `G`, `Q`, `R` and `VELVET` are the references of the fuzz BRDF.
   `make_reference` makes a `Reference` without a quantity. `Sampling`, `Estimate` and `leg` are for
   a reference that is written out in full.
+* Many points: `values(of, points)` are those of a quantity, a reference or a fitted form, and
+  `estimates` the exact ones with their errors. Both need little memory, however many points.
 * Fits: `fit` finds the coefficients of a `Form` for a `Goal`, and returns a `Fit`. `plain_form`
   makes a form of a plain function.
 * Quantities: `problem(name)`, `problems()` and `register(problem)`. `CallingConvention`,
@@ -82,6 +84,8 @@ if TYPE_CHECKING:
     from quantities.plot_hints import PlotHints as PlotHints
     from quantities.problem import Published as Published
     from shadefit.declaration import Problem as Problem
+    from shadefit.many_points import estimates as estimates
+    from shadefit.many_points import values as values
     from shadefit.result import Result as Result
     from shadefit.shared_denominator import (
         fit_with_shared_denominator as fit_with_shared_denominator,
@@ -112,6 +116,7 @@ _HOMES = {
     "quantities.plot_hints": ("AxisHint", "PlotHints"),
     "quantities.problem": ("Published",),
     "shadefit.declaration": ("Problem",),
+    "shadefit.many_points": ("estimates", "values"),
     "shadefit.result": ("Result",),
     "shadefit.shared_denominator": ("fit_with_shared_denominator",),
 }

@@ -35,10 +35,18 @@ _BLENDS = ("overlay", "smooth-overlay", "symmetric-overlay")
 _OPERATORS = tuple(f"detail/{name}{end}" for name in _BLENDS for end in ("", "-inverse"))
 _CURVATURES = tuple(
     f"curvature/{name}"
-    for name in ("from-light", "effective", "equivalent-cylinder", "pack", "unpack")
+    for name in (
+        "from-light",
+        "along-light",
+        "effective",
+        "equivalent-cylinder",
+        "pack",
+        "unpack",
+    )
 )
+_AMBIENT = tuple(f"ambient/{name}" for name in ("talk", "cheap", "recommended", "best"))
 # Functions that are exported, but not fitted.
-FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES)
+FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES, *_AMBIENT)
 
 
 def complete_quantity(incomplete: str) -> list[str]:

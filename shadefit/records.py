@@ -4,16 +4,42 @@
 module needs no JAX.
 """
 
+import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    WithJsonSchema,
+)
 
 from coefficients.packaged import Kind
 from coefficients.table import Table
 
 SCHEMA = "shadefit.output/1"
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Size = Annotated[Number, Field(ge=0)]
+
+
+def _number(value: Any) -> Any:
+    return math.nan if value is None else value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0:
+        raise ValueError("is negative")
+    return value
+
+
+# JSON has no infinity and no NaN: `shadefit.terminal.print_json` writes null for them.
+Number = Annotated[float, BeforeValidator(_number), WithJsonSchema({"type": ["number", "null"]})]
+Size = Annotated[
+    float,
+    BeforeValidator(_number),
+    AfterValidator(_not_negative),
+    WithJsonSchema({"minimum": 0, "type": ["number", "null"]}),
+]
 Count = Annotated[int, Field(ge=0)]
 # The value of each axis by its name, in the unit of the axis.
 Place = dict[str, Number]
@@ -26,9 +52,14 @@ class Part(BaseModel):
 
 
 class Whole(Part):
-    """A whole JSON object; its class has the name of the command."""
+    """A whole JSON object; its class has the name of the command.
+
+    `not_finite` says of each number that is null because it is not finite what it is, by its place,
+    such as `tables[0].errors.max`. It is left out if there is none.
+    """
 
     schema_: Literal["shadefit.output/1"] = Field(alias="schema", default=SCHEMA)
+    not_finite: dict[str, Literal["infinity", "-infinity", "no number"]] | None = None
 
 
 class ErrorsRecord(Part):
@@ -250,6 +281,25 @@ class AmbientErrors(Part):
     bias: dict[str, Number]
     worst: Number
     where: Place
+
+
+class AmbientModelErrors(Part):
+    """A model of the layer with some P_s and G: errors by light relative to the mean radiance.
+
+    `scattered` and `scattering` name P_s and G. `brightest` is the largest radiance in uniform
+    light of radiance one, `least` the least one in any light. `operations` are those of the
+    exported function by its parts.
+    """
+
+    model: str
+    meaning: str
+    scattered: str
+    scattering: str
+    rms: dict[str, Size]
+    largest: dict[str, Size]
+    brightest: Number
+    least: Number
+    operations: dict[str, Count]
 
 
 class LargestRadiance(Part):

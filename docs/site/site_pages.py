@@ -15,7 +15,13 @@ ROOT = Path(__file__).parents[2]
 # Caption -> pages in the order of the navigation. A page that does not exist is left out.
 NAVIGATION = {
     "Guides": ("docs/own-integral", "docs/gallery", "docs/site/explorer"),
-    "Reference": ("docs/site/commands", "docs/json", "docs/table-format", "docs/site/api"),
+    "Reference": (
+        "docs/site/commands",
+        "docs/json",
+        "docs/table-format",
+        "docs/performance",
+        "docs/site/api",
+    ),
     "Mathematics": (
         *("docs/closed-form", "docs/range", "docs/certify", "docs/r-theorem", "docs/brdf"),
         "docs/ambient-light",

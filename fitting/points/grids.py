@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from fitting.points.sobol import MOST_DIMENSIONS, scrambled_points
 from integrals.reference import Axis
 
 
@@ -60,6 +61,8 @@ def sobol_points(axes: tuple[Axis, ...], exponent: int, seed: int) -> np.ndarray
 
 def unit_points(count: int, exponent: int, seed: int) -> np.ndarray:
     """Return 2^exponent scrambled Sobol' points (points, count) in the unit cube."""
+    if count <= MOST_DIMENSIONS:
+        return scrambled_points(count, exponent, seed)
     from scipy.stats import qmc  # noqa: PLC0415  its import takes a second
 
     return qmc.Sobol(count, rng=np.random.default_rng(seed)).random_base2(exponent)

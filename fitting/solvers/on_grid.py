@@ -86,10 +86,17 @@ class OnGrid:
 
 def _is_stationary(form: Form, coefficients: Array, grid: Grid, exact: np.ndarray) -> bool:
     """Whether the residual is nearly orthogonal to the columns of the Jacobian."""
-    root, all_free = np.sqrt(grid.weights), np.full(form.size, True)
-    problem = residuals(form, grid.points, exact, root, all_free, np.zeros(form.size))
-    z = np.asarray(coefficients).ravel()
-    error, slopes = problem.values(z), problem.slopes(z, np.arange(len(exact)))
+    root, z = np.sqrt(grid.weights), np.asarray(coefficients).ravel()
+    parts = linear_parts(form, grid.points)
+    if parts is None:
+        all_free = np.full(form.size, True)
+        problem = residuals(form, grid.points, exact, root, all_free, np.zeros(form.size))
+        error, slopes = problem.values(z), problem.slopes(z, np.arange(len(exact)))
+    else:
+        # Nothing has to be compiled for a quotient of linear functions.
+        with np.errstate(all="ignore"):
+            values, slopes = parts.values_and_slopes(z)
+            error, slopes = root * (values - exact), root[:, None] * slopes
     if not (np.isfinite(error).all() and np.isfinite(slopes).all()):
         return False
     norms = np.linalg.norm(slopes, axis=0)

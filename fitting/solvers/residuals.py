@@ -12,7 +12,7 @@ from fitting.form import Form
 from fitting.goal import Side
 from fitting.linearity import LinearParts, linear_parts, positive_of
 from fitting.points.scattered import scattered_points
-from integrals.reference import in_batches
+from integrals.reference import Batches
 
 # The number of points at which values are evaluated at once, and at which derivatives are.
 _BATCH, _BATCH_OF_SLOPES = 4096, 512
@@ -71,10 +71,10 @@ def residuals(
     between the ends of the codomain, with some distance from both.
     """
 
-    def at(function, z, x, batch):
+    def at(function, z, x):
         whole = fixed.copy()
         whole[free] = z
-        return np.asarray(in_batches(functools.partial(function, form, whole), x, batch))
+        return x.evaluate(functools.partial(function, form, whole))
 
     # The exact value may itself be an end: the distance is at most half of the exact value's own.
     lower, upper = form.reference.codomain
@@ -88,17 +88,34 @@ def residuals(
     if form.reference.data is not None:
         between = scattered_points(form.reference, form.axes, _BETWEEN, _SEED)
         guarded = np.concatenate([points, between])
+    all_points, all_guarded = Batches(points, _BATCH), Batches(guarded, _BATCH)
+    points_of, guarded_of = _Chosen(points), _Chosen(guarded)
     return Residuals(
-        lambda z: (at(_values, z, points, _BATCH) - exact) * scale,
-        lambda z, rows: at(_slopes, z, points[rows], _BATCH_OF_SLOPES)[:, free] * scale[rows, None],
-        lambda z: at(_rooms, z, guarded, _BATCH),
-        lambda z, rows: at(_room_slopes, z, guarded[rows], _BATCH_OF_SLOPES)[:, free],
+        lambda z: (at(_values, z, all_points) - exact) * scale,
+        lambda z, rows: at(_slopes, z, points_of(rows))[:, free] * scale[rows, None],
+        lambda z: at(_rooms, z, all_guarded),
+        lambda z, rows: at(_room_slopes, z, guarded_of(rows))[:, free],
         least,
         most,
         exact,
         scale,
         _free_parts(form, points, free, fixed),
     )
+
+
+@dataclass
+class _Chosen:
+    """Batches of chosen points (n, axes). Those of the last choice are kept for the next call."""
+
+    points: np.ndarray
+    rows: np.ndarray | None = None
+    batches: Batches | None = None
+
+    def __call__(self, rows: np.ndarray) -> Batches:
+        """Return the batches of the points with these indices."""
+        if self.rows is None or self.batches is None or not np.array_equal(rows, self.rows):
+            self.rows, self.batches = rows, Batches(self.points[rows], _BATCH_OF_SLOPES)
+        return self.batches
 
 
 def _free_parts(form: Form, points, free, fixed) -> LinearParts | None:

@@ -11,7 +11,6 @@ again when the coefficients of the first stage are then fitted to all nodes toge
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -60,10 +59,8 @@ class Separable:
         progress(f"{form.size} coefficients of {form.printed or form.name} together")
         coefficients = self._jointly(thin, fits)
         progress(f"errors on {count}×{count} nodes")
-        points = grid.points
-        first = np.asarray(_firsts(self.shape, coefficients, points))
         nodes = self._nodes(form, grid, measure)
-        errors = nodes.errors(first.reshape(count, count, -1))
+        errors = nodes.errors(coefficients)
         on_grid = Errors(
             rms=float(np.sqrt(np.average(errors.squares.ravel(), weights=grid.weights))),
             largest=errors.largest,
@@ -89,11 +86,6 @@ class Separable:
         """Fit all coefficients together; `fits` hold the sums over the inner points."""
         arguments = penalty_points(grid.axes), np.sqrt(grid.weights), fits.factors, fits.optimum
         return _fit_jointly(self.shape, self.steps, grid.points, *arguments)
-
-
-@jit_for_few_calls(static=(0,))
-def _firsts(shape: Quotients, coefficients: Array, points: Array) -> Array:
-    return jax.vmap(lambda point: shape(coefficients, *point))(points)
 
 
 @jit_for_few_calls(static=(0, 1))

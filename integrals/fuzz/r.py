@@ -92,4 +92,5 @@ R = Reference(
     proof_options={"nodes": _NODES_LOW_ALPHA},
     quadrature=quadrature,
     monte_carlo=monte_carlo,
+    smooth_along="theta_f",
 )

@@ -104,6 +104,7 @@ def _each(
     With `out`, the table `certified(found)` of each that is proven is written there at once.
     """
     from coefficients.files import write_whole
+    from coefficients.stated_errors import require_stated
     from coefficients.table import serialise
     from shadefit.progress import stages
 
@@ -112,6 +113,8 @@ def _each(
         line = progress.begin("tables", total=len(entries))
         for entry in entries:
             line.show(f"{entry.name}: preparing the search")
+            if out is not None:
+                require_stated(entry)
 
             def report(standing, name: str = entry.name) -> None:
                 line.show(_standing(name, standing))

@@ -120,9 +120,10 @@ def run(
         legs[leg_name] = {"value": float(estimate.value), "error": float(estimate.error)}
     # Data have no value between their points: only tables can be evaluated there.
     exact = legs[reference.best_leg]["value"] if legs else None
-    if exact is not None and math.isnan(exact):
+    if exact is not None and not math.isfinite(exact):
+        what = "has no limit" if math.isnan(exact) else "is infinite"
         raise ValueError(
-            f"{owner.symbol} has no limit at {place(arguments)}, and no value: "
+            f"{owner.symbol} {what} at {place(arguments)}, and no value: "
             "allowed are all other points of its domain"
         )
     found = {
@@ -155,10 +156,10 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     import numpy as np
 
     from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
-    from fitting import form_values
-    from integrals.many_points import estimates_at_many
+    from shadefit.encoding import visible
+    from shadefit.many_points import estimates, values
     from shadefit.outputs import PointsOutput
-    from shadefit.terminal import print_json
+    from shadefit.terminal import print_json, print_lines
 
     owner = _owner(name)
     if out == OUTPUT:
@@ -170,19 +171,16 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     points = read_points(file, owner.axes)
     columns = {axis.name: points[:, k] for k, axis in enumerate(owner.axes)}
     if owner.reference.legs:
-        found = estimates_at_many(owner.reference, points)
+        found = estimates(owner, points)
         columns |= {"exact": np.asarray(found.value), "error": np.asarray(found.error)}
-    for label, entry in tables.items():
-        fitted = entry.require_fitted()
-        inside = [axis.contains(points[:, k]) for k, axis in enumerate(fitted.axes)]
-        columns[label] = np.where(np.all(inside, axis=0), form_values(fitted, points), np.nan)
+    columns |= {label: values(each.require_fitted(), points) for label, each in tables.items()}
     if out is not None:
         write_whole_bytes(out, written(columns, require_format(out)))
     if json:
         # JSON has no nan.
         rows = {
-            label: [value if math.isfinite(value) else None for value in values.tolist()]
-            for label, values in columns.items()
+            label: [value if math.isfinite(value) else None for value in column.tolist()]
+            for label, column in columns.items()
         }
         print_json(
             PointsOutput(
@@ -194,9 +192,9 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
             )
         )
     elif out is None:
-        print(csv_text(columns), end="")
+        print(visible(csv_text(columns)), end="")
     else:
-        print(out)
+        print_lines(out)
 
 
 def _owner(name: str) -> "Problem":
@@ -285,6 +283,9 @@ def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float | N
     if outside:
         return {"value": None, "difference": None, "reason": "; ".join(outside)}
     value = float(fitted(*arguments.values()))
+    if not math.isfinite(value):
+        what = "no number" if math.isnan(value) else "infinite"
+        return {"value": None, "difference": None, "reason": f"its value is {what} there"}
     return {
         "value": value,
         "difference": None if exact is None else value - exact,

@@ -134,6 +134,7 @@ def export(
         from coefficients.catalogue import resolve
         from coefficients.code_options import CodeOptions
         from coefficients.exported_code import source_file
+        from coefficients.stated_errors import require_stated
 
         options = CodeOptions(
             interface=interface or "listing",
@@ -145,6 +146,8 @@ def export(
             together=together,
         )
         entries = [resolve(each) for each in tables]
+        for entry in entries:
+            require_stated(entry)
         text = source_file(entries, key, precision, name, constants or "inline", options)
     if output is None:
         print(shown_json(text) if key == _JSON else text, end="")
@@ -160,8 +163,12 @@ def _content(name: str) -> str:
     if is_packaged(name):
         return serialise(packaged_table(name))
     from coefficients.catalogue import resolve
+    from coefficients.stated_errors import require_stated
 
-    return serialise(resolve(name).require_table())
+    entry = resolve(name)
+    table = entry.require_table()
+    require_stated(entry)
+    return serialise(table)
 
 
 def _language(to: str | None, output: Path | None) -> str:

@@ -2,6 +2,7 @@
 
 import math
 import re
+import sys
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -13,6 +14,9 @@ if TYPE_CHECKING:
     from integrals.reference import Axis
 
 _ANGLE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|rad|°)?\s*$")
+
+# The smallest normal number of float64, 2^-1022
+LEAST = sys.float_info.min
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")]
 
@@ -99,8 +103,14 @@ def checked(axis: "Axis", value: float) -> float:
     """Return an option's value. Raise ValueError if it is outside the domain of the axis.
 
     The message names the option. For an angle it states the domain in degrees too, so that a user
-    who forgot 'deg' sees the mistake.
+    who forgot 'deg' sees the mistake. Compiled code takes a number below `LEAST` for 0, which may
+    be outside the domain.
     """
+    if 0 < value < LEAST and not axis.contains(0.0):
+        raise ValueError(
+            f"{flag_of(axis.name)} = {value:g} is so small that it counts as 0: allowed are "
+            f"numbers from {LEAST:.4g}"
+        )
     try:
         return axis.check(value)
     except ValueError as error:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coefficients.input_files import read_bounded
+from shadefit.commands.options import LEAST
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,13 +36,16 @@ def read_points(path: Path, axes: "Sequence[Axis]") -> "np.ndarray":
     NPY file has an array (n, axes), or (n,) for one axis. Raises ValueError for a file that cannot
     be read as such, and for a point outside the domain.
     """
+    import numpy as np
+
     extension = require_format(path)
     data = read_bounded(path, MAX_BYTES)
     points = _from_csv(path, data, axes) if extension == ".csv" else _from_npy(path, data, axes)
     if not 1 <= len(points) <= MAX_POINTS:
         raise ValueError(f"{path} has {len(points)} points: allowed are 1 to {MAX_POINTS}")
     for k, axis in enumerate(axes):
-        inside = axis.contains(points[:, k])
+        # Compiled code takes a smaller number for 0.
+        inside = axis.contains(np.where(np.abs(points[:, k]) < LEAST, 0.0, points[:, k]))
         if not inside.all():
             row = int((~inside).argmax())
             where = f"line {row + 2}" if extension == ".csv" else f"row {row}"

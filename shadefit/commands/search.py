@@ -18,12 +18,15 @@ from shadefit.commands.options import (
 
 if TYPE_CHECKING:
     from coefficients.search import Found, Result
+    from coefficients.workers import Workers
     from quantities import Problem
     from shadefit.records import FoundTable
 
 
 # Below this α the built-in forms are not fitted.
 LEAST_END = 0.01
+# Each process takes about 0.5 GB.
+MOST_JOBS = 256
 
 
 def search(
@@ -54,6 +57,17 @@ def search(
         Path,
         typer.Option(help="Folder for tables and the plot; forms with a table are not refitted."),
     ] = Path("build/search"),
+    jobs: Annotated[
+        int, typer.Option(help="Fits at a time, each in a process of its own. By default 1.")
+    ] = 1,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            help="Scheduler of a dask cluster whose workers make the fits, such as "
+            "tcp://host:8786, instead of this machine.",
+            metavar="ADDRESS",
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Fit many forms of a quantity. Print and plot their operations and largest errors.
@@ -83,6 +97,7 @@ def search(
         raise ValueError(f"budget = {budget}: at least one operation is needed")
     if max_error is not None and not max_error > 0:
         raise ValueError(f"max-error = {max_error}: it must be positive")
+    workers = _workers(jobs, cluster)
     owner = known[quantity]
     ends = {**owner.search_lower, **_lower_ends(owner, lower or [])}
     require_writable(out)
@@ -96,7 +111,7 @@ def search(
             in_pipe(f"{quantity}: {stage}", done, total)
 
         tell("which forms to try", 0, 0)
-        result = wanted.run(tell)
+        result = wanted.run(tell, workers)
     drawn = out / f"{quantity}-frontier"
     for extension, data in draw(known[quantity], result).items():
         write_whole_bytes(drawn.with_suffix(f".{extension}"), data)
@@ -106,6 +121,22 @@ def search(
     else:
         limit = "" if max_error is None else f"; {len(good)} of them within {max_error:g}"
         _print(quantity, result, good, limit, drawn)
+
+
+def _workers(jobs: int, cluster: str | None) -> "Workers | None":
+    """Return what fits candidates side by side; None for one fit after the other in this process.
+
+    Raises ValueError for a number of jobs that is not allowed, and for jobs on a cluster.
+    """
+    from coefficients.workers import Cluster, LocalProcesses
+
+    if not 1 <= jobs <= MOST_JOBS:
+        raise ValueError(f"jobs = {jobs}: allowed are 1 to {MOST_JOBS}")
+    if cluster is None:
+        return None if jobs == 1 else LocalProcesses(jobs)
+    if jobs != 1:
+        raise ValueError(f"jobs = {jobs} with --cluster: the cluster decides their number")
+    return Cluster(cluster)
 
 
 def _lower_ends(owner: "Problem", given: list[str]) -> dict[str, float]:
@@ -170,7 +201,7 @@ def _record(quantity: str, each: "Found") -> "FoundTable":
 
 
 def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, drawn: Path) -> None:
-    from shadefit.terminal import print_table
+    from shadefit.terminal import print_lines, print_table
 
     first = [] if result.published is None else [result.published]
     print_table(
@@ -180,7 +211,7 @@ def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, dra
         f"Operations a call, of P_s a direction. {result.refused} forms refused: they have poles, "
         "or are not shown to have none.",
     )
-    print(f"plot {drawn}.png")
+    print_lines(f"plot {drawn}.png")
 
 
 def _row(each: "Found", published: "Found | None") -> list[str]:

@@ -2,13 +2,15 @@
 
 A skin fit has the light on a cylinder that is lit across its axis. Here it is replaced by the exact
 integral, so that all of the error comes from the choice of the curvature. Methods with "blurred"
-take the tensor and the drift that are smoothed by a Gaussian of `BLUR`, the others take those of
+take the tensor and the drift that are smoothed by a Gaussian of `BLUR`, those with "talk" the
+tensor that is made convex and smoothed by the two widths of the talk, and the others the tensor of
 the point.
 """
 
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -17,6 +19,7 @@ import numpy as np
 from integrals.skin import cylinder_scattering, sphere_scattering
 from shadefit.curvature.blocks import over_rows
 from shadefit.curvature.diffusion import NODES, blurred, diffused, patch
+from shadefit.curvature.smoothing import WIDTHS
 from shadefit.curvature.surfaces import (
     Ellipsoid,
     Finger,
@@ -87,18 +90,20 @@ def _cylinder(cosine: jax.Array, kappa: jax.Array) -> jax.Array:
 
 
 # A method has a shader, which returns channels of a tensor, a drift, a projected light and n·l, and
-# says whether the tensor and the drift are the blurred ones.
-METHODS: dict[str, tuple[Callable, bool]] = {
-    "no curvature": (_of_curvature(_none), False),
-    "mean": (_of_curvature(_mean), False),
-    "along the light": (_of_curvature(along_light), False),
-    "along the light, blurred": (_of_curvature(along_light), True),
-    "published shader": (_of_curvature(published), False),
-    "bending along the light": (_of_curvature(bending_along_light), False),
-    "effective": (_of_curvature(effective), False),
-    "effective, blurred": (_of_curvature(effective), True),
-    "equivalent cylinder": (_equivalent, False),
-    "equivalent cylinder, blurred, with drift": (_equivalent, True),
+# says which tensor it takes.
+Source = Literal["point", "blurred", "talk"]
+METHODS: dict[str, tuple[Callable, Source]] = {
+    "no curvature": (_of_curvature(_none), "point"),
+    "mean": (_of_curvature(_mean), "point"),
+    "along the light": (_of_curvature(along_light), "point"),
+    "along the light, talk's blur": (_of_curvature(along_light), "talk"),
+    "along the light, blurred": (_of_curvature(along_light), "blurred"),
+    "published shader": (_of_curvature(published), "point"),
+    "bending along the light": (_of_curvature(bending_along_light), "point"),
+    "effective": (_of_curvature(effective), "point"),
+    "effective, blurred": (_of_curvature(effective), "blurred"),
+    "equivalent cylinder": (_equivalent, "point"),
+    "equivalent cylinder, blurred, with drift": (_equivalent, "blurred"),
 }
 
 
@@ -110,6 +115,7 @@ class Lit:
     normals: np.ndarray
     tensors: np.ndarray
     blurred_tensors: np.ndarray
+    talk_tensors: np.ndarray
     drifts: np.ndarray
     frames: np.ndarray
     lights: np.ndarray
@@ -128,18 +134,21 @@ def lit_at(surface: Surface, points: np.ndarray, lights: np.ndarray, nodes: int 
     """Return points (n, 3) of a surface with lights (n, 3), and the light diffused there."""
     normals, matrices = normals_and_tensors(surface, points)
     frames = frames_of(normals)
-    values, tensors, drifts = [], [], []
+    values, tensors, talk, drifts = [], [], [], []
     for point, light, frame in zip(points, lights, frames, strict=True):
         whole = patch(surface, point, nodes)
         values.append(diffused(whole, point, light, SKIN))
         tensor, drift = blurred(surface, whole, point, frame, BLUR)
         tensors.append(tensor)
         drifts.append(drift)
+        wide = [blurred(surface, whole, point, frame, width, convex=True)[0] for width in WIDTHS]
+        talk.append(np.mean(wide, axis=0))
     return Lit(
         points,
         normals,
         frame_tensors(matrices, frames),
         np.array(tensors),
+        np.array(talk),
         np.array(drifts),
         frames,
         lights,
@@ -154,10 +163,16 @@ def errors(seen: Lit) -> dict[str, np.ndarray]:
 
 def shaded(name: str, seen: Lit) -> np.ndarray:
     """Return the light (n, channels) of a cylinder by a method."""
-    shader, blur = METHODS[name]
-    tensors = seen.blurred_tensors if blur else seen.tensors
-    drifts = seen.drifts if blur else np.zeros_like(seen.drifts)
-    return over_rows(_row(shader), tensors, drifts, seen.frames, seen.normals, seen.lights)[0]
+    shader, source = METHODS[name]
+    tensors = {
+        "point": seen.tensors,
+        "blurred": seen.blurred_tensors,
+        "talk": seen.talk_tensors,
+    }
+    drifts = seen.drifts if source == "blurred" else np.zeros_like(seen.drifts)
+    return over_rows(_row(shader), tensors[source], drifts, seen.frames, seen.normals, seen.lights)[
+        0
+    ]
 
 
 def on_sphere(radius: float, seen: Lit) -> np.ndarray:

@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from integrals.rules.interval import gauss_legendre
+from shadefit.curvature.gaussian_sums import in_plane
 from shadefit.curvature.surfaces import (
     Ellipsoid,
     Finger,
@@ -65,13 +66,19 @@ def diffused(
 
 
 def blurred(
-    surface: Surface, seen: Patch, point: np.ndarray, frame: np.ndarray, width: float
+    surface: Surface,
+    seen: Patch,
+    point: np.ndarray,
+    frame: np.ndarray,
+    width: float,
+    convex: bool = False,
 ) -> tuple[Float[np.ndarray, " 3"], Float[np.ndarray, " 2"]]:
     """Return the tensor (3,) and the drift (2,) at a point, blurred by a Gaussian.
 
     `width` is its σ in mm. Tensors are carried by the shortest rotation, and do not count if
-    normals are more than 90° apart, as in `smoothing`. The drift is the part of the mean normal
-    along the surface, divided by σ². Both are in `frame` (2, 3).
+    normals are more than 90° apart, as in `smoothing`. With `convex`, their eigenvalues below zero
+    become zero first. The drift is the part of the mean normal along the surface, divided by σ².
+    Both are in `frame` (2, 3).
     """
     distance2 = np.sum((seen.points - point) ** 2, axis=1)
     normal = np.cross(*frame)
@@ -80,12 +87,16 @@ def blurred(
     weight = np.exp(-distance2[near] / (2 * width**2)) * seen.areas[near]
     weight /= weight.sum()
     _, matrices = normals_and_tensors(surface, places)
-    # f·R v of the shortest rotation R to n, for v orthogonal to the other normal m, is
-    # (f − n (f·m)/(1 + n·m))·v.
-    along = (normals @ frame.T) / (1 + normals @ normal)[:, None]
-    pulled = frame - along[:, :, None] * normal
-    tensor = np.einsum("n,nai,nij,nbj->ab", weight, pulled, matrices, pulled, optimize=True)
-    return tensor[[0, 0, 1], [0, 1, 1]], frame @ (weight @ normals) / width**2
+    frames = np.broadcast_to(frame, (len(places), 2, 3))
+    tensors = in_plane(matrices, normals, frames, np.broadcast_to(normal, places.shape))
+    if convex:
+        middle, half = (tensors[:, 0] + tensors[:, 2]) / 2, (tensors[:, 0] - tensors[:, 2]) / 2
+        radius = np.hypot(half, tensors[:, 1])
+        upper, lower = np.maximum(middle + radius, 0), np.maximum(middle - radius, 0)
+        ratio = (upper - lower) / np.where(radius > 0, 2 * radius, 1.0)
+        mean, turned = (upper + lower) / 2, ratio * half
+        tensors = np.stack([mean + turned, ratio * tensors[:, 1], mean - turned], axis=1)
+    return weight @ tensors, frame @ (weight @ normals) / width**2
 
 
 def _graded(nodes: int, end: float) -> tuple[np.ndarray, np.ndarray]:

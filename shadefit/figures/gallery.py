@@ -4,6 +4,7 @@ from functools import partial
 
 from quantities import Problem, problems
 from quantities.skin import BAND_QUANTITIES, LOBE_QUANTITIES, SKIN_QUANTITIES
+from shadefit.figures.ambient_cloth import ambient_pictures
 from shadefit.figures.curves import draw_curves
 from shadefit.figures.detail_maps import detail_pictures
 from shadefit.figures.encodings import encoding_pictures
@@ -53,6 +54,7 @@ def pictures() -> dict[str, Picture]:
     }
     topics = {
         **fuzz_pictures(),
+        **ambient_pictures(),
         **microfacet_pictures(),
         **sampling_pictures(),
         **ndf_pictures(),

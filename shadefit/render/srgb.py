@@ -1,5 +1,7 @@
 """Conversion between linear RGB, in which light is computed, and sRGB, which screens show."""
 
+import re
+
 import numpy as np
 
 
@@ -26,12 +28,8 @@ def parse_colour(text: str, name: str) -> tuple[float, float, float]:
 
     Raises ValueError, which names the option, for any other text.
     """
-    digits = text.removeprefix("#")
-    try:
-        if len(digits) != 6:
-            raise ValueError
-        values = np.array([int(digits[i : i + 2], 16) for i in (0, 2, 4)]) / 255
-    except ValueError:
-        raise ValueError(f"{name} is {text!r}; allowed: a colour as #rrggbb") from None
+    if not re.fullmatch("#?[0-9a-fA-F]{6}", text):
+        raise ValueError(f"{name} is {text!r}; allowed: a colour as #rrggbb")
+    values = np.frombuffer(bytes.fromhex(text.removeprefix("#")), np.uint8) / 255
     red, green, blue = (float(x) for x in from_srgb(values))
     return red, green, blue

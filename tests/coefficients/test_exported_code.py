@@ -111,7 +111,7 @@ CASES = [
 
 
 # The forms of these have no operation that the others lack.
-_SLOW = {"q": [pytest.mark.slow], "velvet": [pytest.mark.slow]}
+_SLOW = {key: [pytest.mark.slow] for key in ("g", "q", "velvet", "exact/g", "exact/q")}
 
 
 @pytest.mark.parametrize(

@@ -191,10 +191,10 @@ def test_the_code_draws_visible_normals_of_their_density(name, view):
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
     outgoing = direction(*VIEWS[view])
 
+    pdf = jax.jit(jax.vmap(lambda m: visible_pdf(ndf, outgoing, m)))
+
     def density(at):
-        values = jax.vmap(lambda m: visible_pdf(ndf, outgoing, m))(
-            np.where(at[:, 2:] > 0, at, [0.0, 0.0, 1.0])
-        )
+        values = pdf(np.where(at[:, 2:] > 0, at, [0.0, 0.0, 1.0]))
         return np.where(at[:, 2] > 0, values, 0.0)
 
     assert p_value(normals, density) > REJECTION

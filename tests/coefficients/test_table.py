@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import coefficients
+from coefficients.json_text import MAX_DIGITS, read_object
 from coefficients.packaged import FOLDER, names_of_best
 from coefficients.table import (
     MAX_BYTES,
@@ -22,6 +23,7 @@ from coefficients.table import (
     read,
     serialise,
 )
+from coefficients.table_parts import BLANK
 
 FUZZ = FOLDER / "fuzz"
 SHIPPED = sorted(FUZZ.parent.glob("*/*/*.json"))
@@ -81,20 +83,23 @@ def test_shipped_tables_are_written_back_byte_for_byte(path):
 
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
-SEEN = st.characters(exclude_categories=("Cc", "Cf", "Cs", "Zl", "Zp"))
+SELECTORS = "".join(map(chr, [*range(0xFE00, 0xFE10), *range(0xE0100, 0xE01F0)]))
+SEEN = st.characters(
+    exclude_categories=("Cc", "Cf", "Cs", "Zl", "Zp"), exclude_characters=BLANK + SELECTORS
+)
 
 
 @settings(max_examples=60, deadline=None)
 @given(
     numbers=st.lists(NUMBERS, min_size=17, max_size=17),
     rms=st.floats(0, 1e300),
-    place=st.dictionaries(st.text(SEEN, max_size=8), NUMBERS, max_size=3),
+    place=st.fixed_dictionaries({"alpha": NUMBERS, "theta_f": NUMBERS}),
     equation=st.text(SEEN, max_size=40),
 )
 def test_any_table_survives_writing_and_reading_bit_for_bit(numbers, rms, place, equation):
     data = json.loads(TEXT)
     data["coefficients"], data["equation"] = numbers, equation
-    data["errors"]["on_grid"].update(rms=rms, where=place)
+    data["errors"]["on_grid"].update(rms=rms, max=rms, where=place)
     table = Table.model_validate(data)
     text = serialise(table)
     again = parse(text, "itself")
@@ -255,6 +260,28 @@ WRONG = {
     "a negative error": put("errors", "on_grid", "rms", -1e-3),
     "an error at no point": put("errors", "off_grid", "points", 0),
     "a weight that is no name": put("weight", "Sine!"),
+    "an rms above the largest error": put("errors", "off_grid", "rms", 0.5),
+    "a place of another argument": put("errors", "off_grid", "where", {"alpha": 0.5, "x": 1.0}),
+    "a place without an argument": put("errors", "on_grid", "where", {"alpha": 0.5}),
+    "a proof at a place of another argument": put(
+        "certificates", "largest_error", {"lower": 0.0, "at": {"x": 1.0}, "upper": 1.0, "boxes": 1}
+    ),
+    "a range the wrong way round": put("certificates", "range", [0.5, 0.1]),
+    "a proof of errors the wrong way round": put(
+        "certificates",
+        "largest_error",
+        {"lower": 2.0, "at": {"alpha": 0.5, "theta_f": 0.1}, "upper": 1.0, "boxes": 1},
+    ),
+    "nodes that are there twice": lambda d: d["grid"].update(nodes=[d["grid"]["nodes"][0]] * 2),
+    "nodes of another argument": put("grid", "nodes", 0, "argument", "x"),
+    "two arguments of one name": put("arguments", 1, "name", "alpha"),
+    "a clamp of another argument": lambda d: d.update(
+        publication={**json.loads(PUBLISHED)["publication"], "clamps": {"x": [0.0, 1.0]}}
+    ),
+    "an equation with a soft hyphen": put("equation", "Eq.\u00ad(5)"),
+    "an equation with a tag": put("equation", "Eq. (5)\U000e0041"),
+    "an equation with a variation selector": put("equation", "Eq. (5)\ufe0f"),
+    "an argument with a filler": put("arguments", 0, "symbol", "α\u3164"),
     "an unknown leg": put("reference", "leg", "guess"),
     "a list for a table": lambda data: None,
 }
@@ -266,8 +293,23 @@ def test_what_is_no_table_is_refused_in_one_line(name):
     refused(f"[{text}]" if name == "a list for a table" else text)
 
 
-# What a schema cannot say: the order of two numbers, and that two shapes are the same.
+# What a schema cannot say: the order of two numbers, that two shapes or names are the same, and
+# what cannot be seen.
 BEYOND_A_SCHEMA = {
+    "an rms above the largest error",
+    "a place of another argument",
+    "a place without an argument",
+    "a proof at a place of another argument",
+    "a range the wrong way round",
+    "a proof of errors the wrong way round",
+    "nodes that are there twice",
+    "nodes of another argument",
+    "two arguments of one name",
+    "a clamp of another argument",
+    "an equation with a soft hyphen",
+    "an equation with a tag",
+    "an equation with a variation selector",
+    "an argument with a filler",
     "too few coefficients",
     "rows of different length",
     "an empty domain",
@@ -455,3 +497,9 @@ def test_what_is_no_json_number_is_not_written():
     for bad in (float("nan"), float("inf")):
         with pytest.raises(ValueError, match="cannot be written as JSON"):
             serialise(table.model_copy(update={"coefficients": [bad]}))
+
+
+def test_an_integer_may_have_a_hundred_digits():
+    assert read_object('{"a": ' + "9" * MAX_DIGITS + "}") == {"a": 10**MAX_DIGITS - 1}
+    with pytest.raises(ValueError, match="an integer has 101 digits: allowed are 100"):
+        read_object('{"a": ' + "9" * 101 + "}")

@@ -175,11 +175,11 @@ def test_a_quantity_that_does_not_have_a_measure_weighs_its_errors_equally(nodes
 @pytest.mark.parametrize(
     ("nodes", "message"),
     [
-        (1, "grid = 1: allowed are 9 to 129 nodes an axis"),
+        (1, "grid = 1: allowed are 9 to 1025 nodes an axis"),
         (8, "grid = 8"),
         (0, "grid = 0"),
         (-65, "grid = -65"),
-        (130, "grid = 130"),
+        (1026, "grid = 1026"),
         (10**30, "grid = 1"),
     ],
 )

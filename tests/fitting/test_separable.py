@@ -201,11 +201,11 @@ def test_a_joint_fit_uses_few_nodes_of_a_fine_grid(monkeypatch, count, kept):
 
 def test_a_grid_of_several_blocks_gives_what_its_nodes_give_alone(monkeypatch):
     whole = fits()
-    results = np.random.default_rng(3).normal(size=whole.optimum.shape)
+    coefficients = np.random.default_rng(3).uniform(size=RATIONAL_PS.coefficient_shape)
     nodes = solver(COUNT)._nodes(RATIONAL_PS, GRID, "uniform")
-    errors = nodes.errors(results)
-    monkeypatch.setattr(node_fits, "BLOCK", 5)
-    blocks, other = nodes.best(), nodes.errors(results)
+    errors = nodes.errors(coefficients)
+    monkeypatch.setattr(node_fits, "BLOCK", (5, 4))
+    blocks, other = nodes.best(), nodes.errors(coefficients)
     np.testing.assert_allclose(blocks.optimum, whole.optimum, rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(blocks.factors, whole.factors, rtol=1e-12, atol=1e-13)
     np.testing.assert_allclose(other.squares, errors.squares, rtol=1e-12)

@@ -25,6 +25,7 @@ from shadefit.cli import main
 from shadefit.outputs import AmbientOutput
 from shadefit.render.functions import EXACT, table_sets
 from shading import (
+    AMBIENT_MODELS,
     deferred_radiance,
     direction,
     fiber_direction,
@@ -189,6 +190,7 @@ def test_the_command_prints_what_it_measured(tmp_path, capsys):
     AmbientOutput.model_validate(record)
     assert record["points"] == len(materials_and_views())
     assert len(record["errors"]) == 2 * len(lights())
+    assert len(record["models"]) > len(AMBIENT_MODELS)
     assert (tmp_path / "ambient.png").stat().st_size > 10_000
 
 

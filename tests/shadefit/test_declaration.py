@@ -51,7 +51,13 @@ def test_a_result_evaluates_its_form(result):
     )
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize(
+    "language",
+    [
+        each if each in ("c", "hlsl", "python") else pytest.param(each, marks=pytest.mark.slow)
+        for each in LANGUAGES
+    ],
+)
 def test_a_result_writes_code_with_what_is_known(result, language):
     text = result.code(language)
     assert "Tanhc" in text

@@ -158,7 +158,17 @@ def test_srgb_follows_the_standard_up_to_its_shoulder():
 
 def test_colours_are_read_or_refused():
     np.testing.assert_allclose(parse_colour("#ff0080", "fiber"), (1, 0, 0.2158605), atol=1e-6)
-    for text in ("#ff00", "red", "#gg0000", "", "#1234567"):
+    for text in (
+        "#ff00",
+        "red",
+        "#gg0000",
+        "",
+        "#1234567",
+        "#-1-1-1",
+        "# 1 1 1",
+        "#1_1_1_",
+        "#١٢٣٤٥٦",
+    ):
         with pytest.raises(ValueError, match="fiber is"):
             parse_colour(text, "fiber")
 

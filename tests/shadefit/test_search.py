@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from coefficients import search as module
+from coefficients import candidates as module
 from coefficients.catalogue import resolve
 from coefficients.search import Search
 from fitting import Goal
@@ -109,3 +109,17 @@ def test_the_plot_has_a_line_of_its_own_and_a_pipe_hears_of_the_work(tmp_path, c
     assert said.out.splitlines()[-1] == f"plot {tmp_path / 'q-frontier'}.png"
     assert "Operations a call, of P_s a direction." in " ".join(said.out.split())
     assert said.err.splitlines()[0] == "q: which forms to try"
+
+
+@pytest.mark.parametrize(
+    ("jobs", "cluster", "message"),
+    [
+        (0, None, "jobs = 0: allowed are 1 to 256"),
+        (1000, None, "jobs = 1000"),
+        (2, "tcp://127.0.0.1:9", "jobs = 2 with --cluster"),
+    ],
+)
+def test_jobs_that_cannot_be_are_refused(tmp_path, jobs, cluster, message):
+    with pytest.raises(ValueError, match=message):
+        search("q", norm="l2", out=tmp_path, jobs=jobs, cluster=cluster)
+    assert list(tmp_path.iterdir()) == []

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jax import Array
 
-from integrals.fuzz.ps import FLOAT64_STEPS, lit_cone, reflected_up
+from shading.cubic_root import at_least
+from shading.fuzz.lit_cone import FLOAT64_STEPS, lit_cone, reflected_up
 from shading.types import Scalar
 
 
@@ -96,13 +97,15 @@ def lit_moments(
     seen = 2 * f * y + (spread + f * y_seen / (rise * level)) * axis
     tilted = spread * rise * lean + 2 * f * (a * (coeff_b - t + kappa * c) + sigma2 * b)
     along = f * (coeff_b + 2 * alpha2 * a * b - m) + alpha2 * (lean / level) * tilted
-    mean_square = 1 - kappa * along
+    # T_w ≥ α² is true of unit vectors. For other arguments it keeps the divisor positive.
+    mean_square = at_least(1 - kappa * along, alpha2)
+    twice = 2 * seen / mean_square
     return LitMoments(
         root,
         reflected_up(cone),
         mean_square,
         seen,
         axis,
-        2 * seen / mean_square - jnp.array([0.0, 1.0, 0.0]),
+        jnp.stack([twice[0], twice[1] - 1, twice[2]]),
         root / (2 * mean_square),
     )

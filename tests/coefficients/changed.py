@@ -1,0 +1,16 @@
+"""A packaged table with other content, as a file."""
+
+import json
+from pathlib import Path
+
+from coefficients.packaged import packaged_table
+from coefficients.table import serialise
+
+
+def changed_table(folder: Path, name: str = "q", **changes) -> str:
+    """Write the table `name` with other values of some keys; None removes a key."""
+    data = json.loads(serialise(packaged_table(name)))
+    data |= changes
+    path = folder / "changed.json"
+    path.write_text(json.dumps({key: each for key, each in data.items() if each is not None}))
+    return str(path)

@@ -1,0 +1,97 @@
+"""Exact values along lines: polynomials through a few values, with an error that covers them."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from integrals import Axis, Estimate, R, Reference, Sampling
+from integrals.along_lines import TOLERANCE, estimates_along_lines
+from integrals.many_points import estimates_at_many
+
+AXES = (Axis("a", 0.0, 1.0), Axis("b", 0.0, 2.0))
+STATED = 1e-12
+
+
+def reference(function) -> Reference:
+    return Reference(
+        name="line",
+        symbol="L",
+        meaning="",
+        definition="",
+        axes=AXES,
+        sampling=Sampling(fitted=3, checked=3, judged=3),
+        quadrature=lambda a, b: Estimate(function(a, b), jnp.full((), STATED)),
+        batch=64,
+        smooth_along="b",
+    )
+
+
+def grid(lines: int, points: int) -> np.ndarray:
+    a, b = np.meshgrid(np.linspace(0, 1, lines), np.linspace(0, 2, points), indexing="ij")
+    return np.stack([a.ravel(), b.ravel()], axis=1)
+
+
+class Counted:
+    """The exact values of a function, with the number of points that were evaluated."""
+
+    def __init__(self, function):
+        self.function, self.count = function, 0
+
+    def __call__(self, points: np.ndarray) -> Estimate:
+        self.count += len(points)
+        return Estimate(self.function(*points.T), np.full(len(points), STATED))
+
+
+def along(function, points: np.ndarray) -> tuple[Estimate, int]:
+    exact = Counted(function)
+    return estimates_along_lines(reference(function), points, exact), exact.count
+
+
+def test_a_smooth_line_takes_few_values_and_states_its_error():
+    points = np.random.default_rng(1).permutation(grid(3, 400))
+    found, count = along(lambda a, b: np.exp(a * b) / 8, points)
+    assert count == 3 * 33
+    wrong = np.abs(found.value - np.exp(points[:, 0] * points[:, 1]) / 8)
+    assert (wrong <= found.error).all()
+    assert (found.error <= 3 * STATED + TOLERANCE).all()
+
+
+def test_a_line_of_a_peak_takes_more_nodes_and_a_kink_every_point():
+    def shape(a, b):
+        peak = 1 / (1 + 1.5 * (b - 1) ** 2)
+        return np.where(a < 0.25, np.sin(b), np.where(a < 0.75, peak, abs(b - 0.7)))
+
+    points = grid(3, 400)
+    found, count = along(shape, points)
+    # The nodes of the first try are among those of the second.
+    assert count == 3 * 33 + 2 * 32 + 400
+    wrong = np.abs(found.value - shape(*points.T))
+    assert (wrong <= found.error).all()
+    assert (found.value[800:] == shape(*points[800:].T)).all()
+
+
+def test_few_points_are_evaluated_one_by_one():
+    points = grid(2, 98)
+    found, count = along(lambda a, b: a + b, points)
+    assert count == len(points)
+    assert (found.error == STATED).all()
+
+
+def test_outside_the_domain_there_is_no_value():
+    points = grid(1, 200)
+    points[:3, 1] = [-0.1, 2.1, np.nan]
+    found, _ = along(lambda a, b: a + b, points)
+    assert np.isnan(found.value[:3]).all() and np.isnan(found.error[:3]).all()
+    assert not np.isnan(found.value[3:]).any()
+
+
+@pytest.mark.parametrize("alpha", [0.02, 0.08, 0.3])
+def test_r_on_a_line_is_the_integral_within_the_errors(alpha):
+    points = np.stack([np.full(300, alpha), np.linspace(0, np.pi / 2, 300)], axis=1)
+    found = estimates_at_many(R, points)
+    some = points[7::60]
+    alone = R.estimates(some)
+    allowed = np.asarray(found.error)[7::60] + np.asarray(alone.error)
+    assert (np.abs(np.asarray(found.value)[7::60] - np.asarray(alone.value)) <= allowed).all()
+    every = np.asarray(R.estimates(points).error).max()
+    assert (np.asarray(found.error) <= 4.3 * every + TOLERANCE).all()
