@@ -96,8 +96,8 @@ def fit(
     * `measure`: the name of one of the quantity's measures, which weigh the errors. A quantity that
       has only one measure takes that one.
     * `progress`: a function that is called with a short text before each step.
-    * `exchange`: the solver on scattered points, or coefficients in its place; None for the default
-      solver.
+    * `exchange`: the solver on scattered points, or coefficients in its place; None for that of the
+      form.
     * `counterexamples`: a search for larger errors than those at the points of a fit of the largest
       error, such as `Problem.counterexamples()` returns.
 
@@ -113,7 +113,7 @@ def fit(
         if goal == LEAST_SQUARES:
             return _on_grid(form, found, nodes)
         start = np.asarray(found.coefficients).ravel()
-    solver = exchange or Exchange()
+    solver = exchange or form.exchange or Exchange()
     found = solver.fit(form, goal, measure, start, progress, counterexamples)
     progress(f"{form.name}: errors and certificate")
     return _scattered(form, found, goal, measure)

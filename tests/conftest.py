@@ -25,7 +25,7 @@ if _given is not None:
 os.environ["SHADEFIT_CACHE"] = "off"
 
 SLOW_NAMES = re.compile(
-    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue)|lobe|band)|sggx-filter|ggx-(scale|bias)"
+    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue)|lobe|band)|63-rising|sggx-filter|ggx-(scale|bias)"
 )
 # Of the best tables, these stand for all in sweeps: one for each kind of form.
 STANDING_FOR_ALL = re.compile(

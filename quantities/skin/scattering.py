@@ -1,5 +1,7 @@
 """The quantities D: red, green and blue light that skin scatters on a cylinder and on a sphere."""
 
+import itertools
+
 from integrals.reference import Reference
 from integrals.skin.references import SKIN_REFERENCES
 from quantities.calling_convention import Argument, CallingConvention
@@ -13,8 +15,15 @@ from quantities.skin.hyperbola_forms import (
     without_denominator,
 )
 from quantities.skin.pesce import pesce_form
+from quantities.skin.rising_forms import rising_candidates, rising_form
 from quantities.skin.yeung import yeung_form
 
+_ARGUMENTS = {
+    "narrow": "fraction",
+    "wide": "fraction",
+    "numerator": "exponents",
+    "below": range(MOST_BELOW + 1),
+}
 _LARGEST_ERROR = {"red": 0.004, "green": 0.0006, "blue": 0.0002}
 
 
@@ -24,21 +33,17 @@ def _problem(reference: Reference) -> Problem:
     def made(**shape):
         return hyperbola_form(reference, **shape)
 
+    def rising(**shape):
+        return rising_form(reference, **shape)
+
     return Problem(
         reference=reference,
         forms=(without_denominator(reference), pesce_form(reference), yeung_form(reference)),
         families={
-            "hyperbola-skin": Family(
-                made,
-                {
-                    "narrow": "fraction",
-                    "wide": "fraction",
-                    "numerator": "exponents",
-                    "below": range(MOST_BELOW + 1),
-                },
-            ),
+            "hyperbola-skin": Family(made, _ARGUMENTS),
+            "rising-skin": Family(rising, _ARGUMENTS),
         },
-        candidates=lambda _: candidates(reference),
+        candidates=lambda _: itertools.chain(candidates(reference), rising_candidates(reference)),
         calling=CallingConvention(
             name=f"Skin{surface.capitalize()}{channel.capitalize()}",
             summary=f"D, {channel} light that skin scatters on a {surface}; clamps to the domain.",

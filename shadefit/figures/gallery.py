@@ -44,9 +44,9 @@ def pictures() -> dict[str, Picture]:
     """Return all pictures, by name.
 
     A quantity whose pictures are not declared gets errors-NAME if it has one or two axes. The
-    quantities of skin look alike: only the first gets one.
+    quantities of skin have one picture for all.
     """
-    shown = (*DRAWN, *SKIN_QUANTITIES[1:], *LOBE_QUANTITIES, *BAND_QUANTITIES)
+    shown = (*DRAWN, *SKIN_QUANTITIES, *LOBE_QUANTITIES, *BAND_QUANTITIES)
     others = {
         f"errors-{owner.name}": errors_picture(owner)
         for owner in problems().values()

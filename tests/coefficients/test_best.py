@@ -185,6 +185,8 @@ QUOTIENTS = (
 GAP = 0.005
 # Fits of forms with a proven lower bound that are further above it.
 NOT_LEAST = {"best/skin-cylinder-green-63": 0.075}
+# The bound of a form with constraints is that without them.
+CONSTRAINED = 0.5
 # Fits whose largest error elsewhere is further above that at their own points.
 NOT_SETTLED = {"best/ps-11": 0.006, "best/ggx-scale-83": 0.006, "best/ggx-bias-93": 0.012}
 # A change of one coefficient by one per cent can be undone, to first order.
@@ -202,7 +204,8 @@ def test_a_best_table_says_how_near_it_is_to_the_best_coefficients(name):
     if least is not None:
         largest = table.errors.off_grid.max
         assert least <= table.errors.on_grid.max * (1 + 1e-9)
-        assert (1 - NOT_LEAST.get(name, GAP)) * largest < least <= largest * (1 + 1e-9)
+        gap = CONSTRAINED if name.endswith("-rising") else NOT_LEAST.get(name, GAP)
+        assert (1 - gap) * largest < least <= largest * (1 + 1e-9)
     if local is not None:
         # At the points of the fit, where the largest error may be less than elsewhere.
         errors = table.errors
@@ -259,6 +262,7 @@ def test_which_tables_are_not_proven_to_be_within_the_codomain():
     """README states this too."""
     without = [name for name in TABLES if not resolve(name).require_table().certificates.range]
     skin = [name for name in TABLES if "skin-" in name and "skin-band-" not in name]
+    skin = [name for name in skin if not name.endswith("-rising")]
     assert sorted(without) == sorted(
         ["ggx-bias", "ggx-directional-albedo", "ggx-scale", "ps", *skin]
     )

@@ -31,6 +31,7 @@ SHAPES = {
     "quotient-sggx-filter": {"above": 1, "below": 1},
     "quotient-sggx-filter-axes": {"numerator": [[1, 0]], "denominator": [[0, 1]]},
     "hyperbola-skin": SKIN,
+    "rising-skin": SKIN,
     "lobe-skin": {**SKIN, "wide": 1.5},
     "quotient-skin": {"above": 1, "below": 1},
 }
@@ -38,6 +39,7 @@ SHAPES = {
 LIMITED = {
     "quotient-sggx-filter-axes": {"numerator": [[[1, 0]], [[7, 7]]]},
     "hyperbola-skin": {"narrow": [0.05], "wide": [0.5], "numerator": [[[5, 0]], [[5, 7]]]},
+    "rising-skin": {"narrow": [0.05], "wide": [0.5], "numerator": [[[5, 0]], [[5, 7]]]},
     "lobe-skin": {"numerator": [[[5, 0]], [[5, 7]]]},
 }
 FAMILIES = {name: owner for owner in problems().values() for name in owner.families}

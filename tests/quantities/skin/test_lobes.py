@@ -8,7 +8,7 @@ from coefficients.catalogue import resolve
 from fitting import form_values
 from integrals.skin import cylinder_scattering, ring_weights, sphere_scattering, sphere_weights
 from quantities.skin.hyperbola_forms import MOST_WIDTH
-from shading.skin import SKIN, burley_as_gaussians
+from shading.skin import SKIN, GaussianProfile, burley_as_gaussians
 
 COSINES = np.linspace(-1, 1, 41)
 SURFACES = {
@@ -43,6 +43,26 @@ def test_the_error_of_a_profile_is_at_most_that_of_a_lobe(surface, profile):
         # Lobes that are wider than the table's domain are clamped to it.
         assert error <= largest * (1 + 1e-3) + 0.2 * beyond
         assert 1e-5 < error < 0.002
+
+
+# Burley's profile for b = 0.7 mm, as the page has it
+WIDTHS = (0.08, 0.162, 0.328, 0.663, 1.343, 2.717, 5.5)
+WEIGHTS = (0.0372, 0.0881, 0.1447, 0.1865, 0.2723, 0.2322, 0.0390)
+
+
+@pytest.mark.slow
+def test_seven_lobes_are_burleys_profile():
+    seven = GaussianProfile(tuple(s * s for s in WIDTHS), (WEIGHTS,))
+    exact = jax.jit(
+        jax.vmap(
+            lambda theta, k: sphere_scattering(burley_as_gaussians(0.7), theta, k)[0], (0, None)
+        )
+    )
+    errors = [
+        np.abs(sum_of_lobes("sphere", seven, k)[0][0] - np.asarray(exact(np.arccos(COSINES), k)))
+        for k in (0.02, 0.1, 0.3, 0.5)
+    ]
+    assert 0.0005 < np.max(errors) < 0.0018
 
 
 def test_a_lobe_is_fitted_within_two_thousandths():
