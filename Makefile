@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup refit test test-slow test-wheel check figures docs report bench format lock clean
+.PHONY: help setup refit test test-slow test-matrix mutants test-wheel check figures docs report bench format lock clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -32,6 +32,25 @@ test: check  ## checks, then the default tests
 
 test-slow: setup  ## the full refits and the large sweeps
 	$(BIN)/pytest -n 2 -m slow
+
+# The versions of Python to try, as far as they are installed; each has an environment of its own.
+PYTHONS ?= python3.11 python3.12 python3.13
+MATRIX := build/matrix
+
+test-matrix:  ## the default tests with every version of Python that is installed
+	@for python in $(PYTHONS); do \
+	    if ! command -v $$python >/dev/null; then echo "$$python is not installed"; continue; fi; \
+	    echo "$$python"; place=$(MATRIX)/$$python; \
+	    $$python -m venv $$place && \
+	    $$place/bin/pip install --quiet --disable-pip-version-check --require-hashes \
+	        -r requirements.lock && \
+	    $$place/bin/pip install --quiet --disable-pip-version-check --no-deps \
+	        --no-build-isolation -e . && \
+	    $$place/bin/pytest -n 2 || exit 1; \
+	done
+
+mutants: setup  ## count the small changes of the code that its tests notice
+	$(BIN)/python benchmarks/mutants.py
 
 test-wheel: setup  ## build the packages, install them into an empty environment, and test them there
 	$(BIN)/pytest -m wheel tests/test_wheel.py

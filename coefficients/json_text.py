@@ -6,6 +6,9 @@ from typing import Any
 
 # Integers with more digits are refused before they are converted, because the conversion is slow.
 MAX_DIGITS = 100
+# More values than these (objects, lists, texts, numbers) are refused before they are validated: an
+# error takes kilobytes, and each value may be one. The largest packaged table has 1855.
+MAX_VALUES = 100_000
 # Lines are at most this many characters long.
 WIDTH = 100
 
@@ -14,8 +17,8 @@ def read_object(text: str) -> dict[str, Any]:
     """Read a JSON object.
 
     Raises ValueError for text that is not a JSON object, for a key that occurs twice, for NaN and
-    infinities, and for an integer with too many digits. Raises RecursionError for text that is
-    nested too deeply.
+    infinities, for an integer with too many digits, and for too many values. Raises RecursionError
+    for text that is nested too deeply.
     """
     data = json.loads(
         text,
@@ -25,6 +28,7 @@ def read_object(text: str) -> dict[str, Any]:
     )
     if not isinstance(data, dict):
         raise ValueError("allowed is an object, {…}")
+    _require_few(data)
     return data
 
 
@@ -50,6 +54,19 @@ def _without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         keys = [key for key, _ in pairs]
         raise ValueError(f"{max(keys, key=keys.count)!r} is there twice")
     return found
+
+
+def _require_few(data: dict[str, Any]) -> None:
+    """Raise ValueError if data has too many values. They are counted without recursion."""
+    waiting: list[Any] = [data]
+    count = 1
+    while waiting:
+        each = waiting.pop()
+        inner = each.values() if isinstance(each, dict) else each
+        count += len(inner)
+        if count > MAX_VALUES:
+            raise ValueError(f"it has more than {MAX_VALUES} values")
+        waiting.extend(value for value in inner if isinstance(value, dict | list))
 
 
 def _integer(digits: str) -> int:

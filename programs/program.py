@@ -12,6 +12,10 @@ from programs.operations import OPERATIONS
 # from zero: first the inputs, then the result of each step, in order.
 Operand = int | float
 
+# Points are evaluated in parts whose values of all steps take about this many bytes, but in parts
+# of at least so many points.
+_BYTES, _LEAST_ROWS = 1 << 27, 1 << 12
+
 
 @dataclass(frozen=True)
 class Step:
@@ -122,8 +126,14 @@ def evaluate(
     rows = np.asarray(inputs, dtype)
     if rows.ndim != 2:
         raise ValueError(f"inputs of {program.name} have shape {rows.shape}; allowed: (n, k)")
+    numbers = (len(program.inputs) + len(program.steps)) * np.dtype(dtype).itemsize
+    count = max(_LEAST_ROWS, _BYTES // max(numbers, 1))
     table = {name: operation.numpy for name, operation in OPERATIONS.items()}
-    with np.errstate(all="ignore"):
-        results = interpret(program, list(rows.T), table, dtype)
-    columns = [np.broadcast_to(np.asarray(result, dtype), len(rows)) for result in results]
-    return np.stack(columns, axis=1)
+    found = np.empty((len(rows), len(program.outputs)), dtype)
+    for start in range(0, len(rows), count):
+        part = rows[start : start + count]
+        with np.errstate(all="ignore"):
+            results = interpret(program, list(part.T), table, dtype)
+        for k, result in enumerate(results):
+            found[start : start + count, k] = result
+    return found

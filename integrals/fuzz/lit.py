@@ -245,7 +245,7 @@ def monte_carlo(
 
 
 E_LIT = Reference(
-    name="e-lit",
+    name="lit",
     symbol="E_lit",
     meaning="integral of the phase function over the lights above the horizon",
     definition="∫_Ω p_F(u, v) dω_u",

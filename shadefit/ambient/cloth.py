@@ -22,7 +22,7 @@ from shadefit.render.settings import Settings
 from shading import ambient_attenuation, escape, harmonics, roughness_from_spread
 
 SETTINGS = Settings(
-    density=0.3, spread=0.1, tilt=float(np.radians(55)), fiber="#8fb4ff", base="#1b2a5c", size=228
+    density=0.3, spread=0.1, tilt=float(np.radians(55)), fiber="#8fb4ff", base="#1b2a5c", size=210
 )
 # The axis of the lobe ((1 + ω·s)/2)², its linear RGB, and that of the uniform light.
 AXIS, KEY, REST = (0.93, 0.2, 0.31), (5.8, 5.1, 4.1), (0.2, 0.24, 0.3)

@@ -26,7 +26,7 @@ _AZIMUTHS = np.arange(36) * np.pi / 18
 # computed at fewer azimuths and interpolated.
 _CHORDS = 180
 # Width and height of one disk on the sheet.
-_INCHES = 1.4
+_INCHES = 1.2
 
 
 def draw_ambient() -> bytes:

@@ -25,17 +25,17 @@ def parsed_form(text: str, axes: int) -> tuple[str, list[int]]:
     """
     kind, _, numbers = text.partition(":")
     if kind not in _COUNTS:
-        raise ValueError(f"--form {text}: allowed are {', '.join(_COUNTS)}, as in rational:2,2")
+        raise ValueError(f"--form {text!r}: allowed are {', '.join(_COUNTS)}, as in rational:2,2")
     try:
         counts = [int(part) for part in numbers.split(",")]
     except ValueError:
-        raise ValueError(f"--form {text}: {numbers!r} are no whole numbers") from None
+        raise ValueError(f"--form {text!r}: {numbers!r} are no whole numbers") from None
     least, most = _COUNTS[kind] or (1, axes)
     if not least <= len(counts) <= most or min(counts) < 0:
         allowed = str(least) if least == most else f"{least} to {most}"
-        raise ValueError(f"--form {text}: allowed are {allowed} numbers after {kind}:")
+        raise ValueError(f"--form {text!r}: allowed are {allowed} numbers after {kind}:")
     if max(counts) > _LARGEST:
-        raise ValueError(f"--form {text}: allowed are numbers up to {_LARGEST}")
+        raise ValueError(f"--form {text!r}: allowed are numbers up to {_LARGEST}")
     return kind, counts
 
 

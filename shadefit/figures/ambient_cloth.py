@@ -13,7 +13,7 @@ from shadefit.figures.style import ERRORS
 from shadefit.render.srgb import to_srgb
 
 # The edge of an image in inches, and where the colour scale of differences ends.
-_INCHES, _LIMIT = 1.9, 1.0
+_INCHES, _LIMIT = 1.75, 1.0
 
 
 def ambient_pictures() -> dict[str, Picture]:

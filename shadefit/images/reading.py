@@ -76,6 +76,8 @@ def _decoded(file: ImageFile, mode: str) -> np.ndarray:
 
 def _read_png(data: bytes, name: str, max_edge: int) -> np.ndarray:
     file = _opened(PngImageFile, data, name, max_edge)
+    if not file.tile:
+        raise _RefusedError("it has no pixels")
     tile = file.tile[0]
     raw = tile.args if isinstance(tile.args, str) else ""
     if raw == "LA;16B":

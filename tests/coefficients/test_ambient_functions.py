@@ -108,14 +108,14 @@ def test_nothing_depends_on_the_frame_nor_on_the_sign_of_the_fibre(name):
 
 @pytest.mark.parametrize("name", EACH)
 def test_white_cloth_in_uniform_light_is_never_brighter_than_the_light(name):
-    """1.02 is the excess that a fitted G may cause at grazing views of thin layers."""
+    """The fitted G may cause a small excess at grazing views of thin layers: 1.0002 was found."""
     rows = arguments().copy()
     rows[:, LIGHT] = 0
     rows[:, LIGHT.start : LIGHT.start + 3] = UNIFORM
     rows[:, FIBER_ALBEDO.start :] = 1.0
     found = evaluate(program(name), rows)
     assert np.all(found >= 0)
-    assert np.max(found[:, 0] + found[:, 3]) < 1.02
+    assert np.max(found[:, 0] + found[:, 3]) < 1.0005
 
 
 @pytest.mark.parametrize("name", EACH)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from coefficients.catalogue import entry_of, names, resolve
-from coefficients.expression import form_of, program_from
+from coefficients.expression import form_of, program_from, reference_of
 from coefficients.table import parse, serialise
 
 BASE = json.loads(serialise(resolve("best/q-9").require_table()))
@@ -125,3 +125,17 @@ def test_a_table_of_schema_2_needs_an_expression():
     data = {key: value for key, value in BASE.items() if key != "expression"}
     with pytest.raises(ValueError, match="expression is missing"):
         parse(json.dumps(data), "a file")
+
+
+@pytest.mark.parametrize("codomain", [[0.0, 2.0], None])
+def test_the_reference_of_a_table_has_what_the_table_says_of_its_quantity(codomain):
+    about = {"symbol": "S", "definition": "a", "meaning": "b", "function": "F"}
+    about |= {"arguments": {"density": "d"}, "codomain": codomain}
+    table = parse(json.dumps({**BASE, "about": about}), "itself")
+    reference = reference_of(table)
+    assert (reference.symbol, reference.definition, reference.meaning) == ("S", "a", "b")
+    assert reference.codomain == ((0.0, 2.0) if codomain else (-math.inf, math.inf))
+    assert not reference.legs
+    silent = reference_of(parse(json.dumps(BASE), "itself"))
+    assert (silent.symbol, silent.meaning) == (table.quantity, "")
+    assert silent.codomain == (-math.inf, math.inf)

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import coefficients
+from coefficients.json_text import MAX_DIGITS, read_object
 from coefficients.packaged import FOLDER, names_of_best
 from coefficients.table import (
     MAX_BYTES,
@@ -265,6 +266,12 @@ WRONG = {
     "a proof at a place of another argument": put(
         "certificates", "largest_error", {"lower": 0.0, "at": {"x": 1.0}, "upper": 1.0, "boxes": 1}
     ),
+    "a range the wrong way round": put("certificates", "range", [0.5, 0.1]),
+    "a proof of errors the wrong way round": put(
+        "certificates",
+        "largest_error",
+        {"lower": 2.0, "at": {"alpha": 0.5, "theta_f": 0.1}, "upper": 1.0, "boxes": 1},
+    ),
     "nodes that are there twice": lambda d: d["grid"].update(nodes=[d["grid"]["nodes"][0]] * 2),
     "nodes of another argument": put("grid", "nodes", 0, "argument", "x"),
     "two arguments of one name": put("arguments", 1, "name", "alpha"),
@@ -293,6 +300,8 @@ BEYOND_A_SCHEMA = {
     "a place of another argument",
     "a place without an argument",
     "a proof at a place of another argument",
+    "a range the wrong way round",
+    "a proof of errors the wrong way round",
     "nodes that are there twice",
     "nodes of another argument",
     "two arguments of one name",
@@ -488,3 +497,9 @@ def test_what_is_no_json_number_is_not_written():
     for bad in (float("nan"), float("inf")):
         with pytest.raises(ValueError, match="cannot be written as JSON"):
             serialise(table.model_copy(update={"coefficients": [bad]}))
+
+
+def test_an_integer_may_have_a_hundred_digits():
+    assert read_object('{"a": ' + "9" * MAX_DIGITS + "}") == {"a": 10**MAX_DIGITS - 1}
+    with pytest.raises(ValueError, match="an integer has 101 digits: allowed are 100"):
+        read_object('{"a": ' + "9" * 101 + "}")

@@ -1,9 +1,12 @@
 """Programs as data: evaluation with NumPy and with other numbers, and parts of programs."""
 
+import tracemalloc
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from programs import program as program_module
 from programs.functions import Function, Parameter
 from programs.program import Program, Step, evaluate, interpret, reachable_values, subprogram
 from programs.tracing.tracer import trace
@@ -83,3 +86,33 @@ def test_a_subprogram_has_the_needed_steps_only_and_all_inputs():
     assert subprogram(WHOLE, [3]).steps == STEPS[:2]
     rows = np.array([[0.5, 2.0], [1.0, -3.0]])
     np.testing.assert_array_equal(evaluate(part, rows)[:, 0], evaluate(WHOLE, rows)[:, 1])
+
+
+def chain(length: int) -> Program:
+    """A program whose steps are all needed at the end of it, and one output that is constant."""
+    steps = [Step("sin", (0,)), *(Step("mul", (k, 0.9999)) for k in range(1, length - 1))]
+    return Program("chain", ("x",), (*steps, Step("add", (length - 1, 1))), (length, 2.5, 0))
+
+
+def test_points_are_evaluated_in_parts_of_bounded_memory(monkeypatch):
+    # All steps at all points would take 32 MiB.
+    monkeypatch.setattr(program_module, "_BYTES", 1 << 22)
+    points = np.random.default_rng(0).random((1 << 15, 1))
+    tracemalloc.start()
+    found = evaluate(chain(128), points)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 8 << 20
+    assert found.shape == (1 << 15, 3)
+    assert np.all(found[:, 1] == 2.5) and np.array_equal(found[:, 2], points[:, 0])
+
+
+@pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64])
+def test_parts_have_the_values_of_the_whole(monkeypatch, dtype):
+    points = np.random.default_rng(0).normal(size=(101, 1))
+    whole = evaluate(chain(20), points, dtype)
+    monkeypatch.setattr(program_module, "_BYTES", 0)
+    np.testing.assert_array_equal(evaluate(chain(20), points, dtype), whole)
+    monkeypatch.setattr(program_module, "_LEAST_ROWS", 7)
+    np.testing.assert_array_equal(evaluate(chain(20), points, dtype), whole)
+    assert whole.dtype == dtype

@@ -87,10 +87,10 @@ def test_of_few_rows_none_is_held_out(run, tmp_path):
 
 
 BAD = {
-    "a shape": (["--form", "spline:3"], "--form spline:3: allowed are rational, polynomial"),
-    "no numbers": (["--form", "rational"], "--form rational: '' are no whole numbers"),
+    "a shape": (["--form", "spline:3"], "--form 'spline:3': allowed are rational, polynomial"),
+    "no numbers": (["--form", "rational"], "--form 'rational': '' are no whole numbers"),
     "a third number": (["--form", "rational:1,2,3"], "allowed are 2 numbers after rational:"),
-    "a negative number": (["--form", "polynomial:-1"], "--form polynomial:-1: allowed"),
+    "a negative number": (["--form", "polynomial:-1"], "--form 'polynomial:-1': allowed"),
     "a column": (["--x", "alpha", "--form", "polynomial:1"], "has no column 'alpha': allowed are"),
     "rows": (["--hold-out", "1", "--form", "polynomial:1"], "hold_out = 1: allowed are 0 and 2"),
     "too rich": (["--form", "polynomial:200"], "has 201 coefficients, but data.csv has only 120"),
