@@ -162,7 +162,8 @@ def _division(one: Any, other: Any) -> _Quotient:
     if right.below is not _ONE:
         raise _NotLinear
     if not right.above.slopes:
-        if right.above.constant == 0:
+        # NumPy divides an array by zero, but Python raises an error for a number.
+        if np.ndim(right.above.constant) == 0 and right.above.constant == 0:
             raise _NotLinear
         return _Quotient(left.above.scaled(1 / right.above.constant), left.below)
     if left.below is _ONE:
