@@ -14,6 +14,7 @@ import numpy as np
 from coefficients.agreement import fitted_form
 from coefficients.expression import form_of, reference_of, require_same
 from coefficients.packaged import (
+    AMBIENT,
     AS_PRINTED,
     EXACT,
     FOLDER,
@@ -279,9 +280,19 @@ def _closed_form(name: str) -> Entry:
     return Entry(name, "exact", known[name])
 
 
+def exported_functions(kind: str | None = None) -> dict[str, Problem]:
+    """Return what `quantities.functions` does, and with it the functions of ambient light."""
+    found = functions(kind)
+    if kind in (None, AMBIENT):
+        from coefficients.ambient.problems import ambient_problems  # noqa: PLC0415
+
+        found |= {f"{AMBIENT}/{name}": each for name, each in ambient_problems().items()}
+    return found
+
+
 def _function(name: str) -> Entry:
     """Return the entry of a function that is declared as a quantity without forms."""
-    known = functions(name.partition("/")[0])
+    known = exported_functions(name.partition("/")[0])
     if name not in known:
         raise ValueError(f"no function is called {name!r}: allowed are {', '.join(known)}")
     return Entry(name, "exact", known[name])

@@ -101,9 +101,13 @@ def require_use(options: CodeOptions, problems: Sequence[Problem]) -> None:
 
 
 def _returns_structure(owner: Problem) -> bool:
-    """Return whether the exact code of a quantity has functions that return structures."""
+    """Return whether the exact code of a quantity has functions that return structures of numbers.
+
+    Structures of vectors have only one layout.
+    """
     exact = owner.exact_code
-    return exact is not None and any(each.record is not None for each in exact.functions("float"))
+    records = [each.record for each in exact.functions("float")] if exact is not None else []
+    return any(record is not None and not record.vectors for record in records)
 
 
 def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function, ...]:
@@ -116,14 +120,16 @@ def _laid_out(functions: tuple[Function, ...], layout: Layout) -> tuple[Function
 def joined(called: Sequence[tuple[Function, ...]], name: str) -> Function:
     """Return one function that returns the values of several functions of the same arguments.
 
-    `called` has the functions of each table. Raises ValueError for a single table, for one of two
-    functions, and for tables whose functions have other arguments.
+    `called` has the functions of each table, of one value each. Raises ValueError for a single
+    table, for one of two functions or of several values, and for other arguments.
     """
     if len(called) < 2:
         raise ValueError(f"together {name!r} is of one table; allowed: at least 2")
     for first, *more in called:
         if more:
             raise ValueError(f"together {name!r}: {more[-1].name} is one of two functions")
+        if first.result is not None:
+            raise ValueError(f"together {name!r}: {first.name} has {first.result} values, not one")
         if first.parameters != called[0][0].parameters:
             raise ValueError(
                 f"together {name!r}: {first.name} has other arguments or domains than "

@@ -25,13 +25,22 @@ class ReaderGoneError(Exception):
 def require_writable(folder: Path) -> None:
     """Raise ValueError if files cannot be written into a folder. Call this before long work."""
     try:
-        existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+        existing = next(path for path in (folder, *folder.absolute().parents) if _is_there(path))
         if not existing.is_dir():
             raise ValueError(f"{existing} is no folder")
         # A file is really made: permissions do not show that a file system is read-only.
         tempfile.TemporaryFile(dir=existing).close()
     except OSError as error:
         raise ValueError(f"{folder} cannot be written: {error.strerror or error}") from None
+
+
+def _is_there(path: Path) -> bool:
+    """Return whether a path is in use, also by a symbolic link that leads nowhere."""
+    try:
+        path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    return True
 
 
 def require_writable_file(path: Path) -> None:

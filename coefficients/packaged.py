@@ -4,6 +4,7 @@
 """
 
 import os
+import tomllib
 from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
@@ -12,19 +13,34 @@ from typing import Literal
 from coefficients.table import Table, read
 
 FOLDER = Path(__file__).parent / "tables"
+# The project's name in its project file
+NAME = "shadefit"
 # Behind the name of a published table: the table as it is printed, without corrections.
 AS_PRINTED = "@printed"
 EXACT = "exact"
+# The first part of the names of ambient functions, which use tables
+AMBIENT = "ambient"
 # The first parts of the names of functions that are exported, but not fitted.
-FUNCTIONS = ("sampler", "decode", "detail", "curvature")
+FUNCTIONS = ("sampler", "decode", "detail", "curvature", AMBIENT)
 
 Kind = Literal["printed", "published", "refitted", "best", "exact", "file"]
 _KINDS: dict[str, Kind] = {"published": "published", "refit": "refitted", "best": "best"}
 
 
 def in_checkout() -> bool:
-    """Return whether the packaged tables are those of a checkout, which may be replaced."""
-    return (FOLDER.parent.parent / "pyproject.toml").is_file()
+    """Return whether the packaged tables are those of a checkout, which may be replaced.
+
+    Other packages leave their project files among the installed ones, so that its name counts.
+    """
+    root = FOLDER.parent.parent
+    if root.name in ("site-packages", "dist-packages"):
+        return False
+    try:
+        return (
+            tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]["name"] == NAME
+        )
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
 
 
 @lru_cache(maxsize=1)

@@ -36,6 +36,8 @@ from integrals.reference import Estimate as Estimate
 from integrals.reference import Reference as Reference
 from integrals.reference_of_source import make_reference as make_reference
 from integrals.sampling import Sampling as Sampling
+from integrals.skin.band_references import SKIN_BANDS as SKIN_BANDS
+from integrals.skin.lobe_references import SKIN_LOBES as SKIN_LOBES
 from integrals.skin.references import SKIN_REFERENCES as SKIN_REFERENCES
 from integrals.sources import Source as Source
 from integrals.sources import closed_form as closed_form
@@ -46,4 +48,5 @@ from integrals.sources import sphere as sphere
 _FUZZ = (PS, G, Q, R, VELVET)
 _MICROFACETS = (GGX_DIRECTIONAL_ALBEDO, GGX_SCALE, GGX_BIAS, GGX_AVERAGE_ALBEDO)
 _MAPS = (SGGX_FILTER, SGGX_FILTER_AXES)
-REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS, *SKIN_REFERENCES)}
+_SKIN = (*SKIN_REFERENCES, *SKIN_LOBES, *SKIN_BANDS)
+REFERENCES = {each.name: each for each in (*_FUZZ, *_MICROFACETS, *_MAPS, *_SKIN)}

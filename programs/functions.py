@@ -6,6 +6,18 @@ from math import isfinite
 from typing import Any, Literal
 
 Layout = Literal["array", "struct", "vec4"]
+# What the numbers of a parameter are: an array, one vector of three, or an array of such vectors.
+Shape = Literal["array", "vector", "vectors"]
+_LETTERS = "xyz"
+
+
+# How a component of a vector is written in most languages
+COMPONENT = "{vector}.{letter}"
+
+
+def component_of(template: str, vector: str, index: int) -> str:
+    """Write component 0, 1 or 2 of a vector by a template with {vector}, {letter} and {index}."""
+    return template.format(vector=vector, letter=_LETTERS[index], index=index)
 
 
 @dataclass(frozen=True)
@@ -14,20 +26,29 @@ class Record:
 
     `name` is that of the type. `layout` says what it contains: one array `member[…]`; a number for
     each result, `member0`, `member1`, …; or vectors of four numbers, which have these names. The
-    last is what constant buffers hold without padding. Languages without types of variables have a
-    tuple or an array instead. Raises ValueError for a name that is not an identifier.
+    last is what constant buffers hold without padding. If `vectors` has names, the structure
+    contains a vector of three numbers for each of them instead. Languages without types of
+    variables have a tuple or an array instead. Raises ValueError for a name that is not an
+    identifier.
     """
 
     name: str
     layout: Layout = "array"
     member: str = "m"
+    vectors: tuple[str, ...] = ()
 
     def __post_init__(self):
         require_identifier("record", self.name)
-        require_identifier("member", self.member)
+        for member in (self.member, *self.vectors):
+            require_identifier("member", member)
 
-    def place(self, index: int) -> str:
-        """Return the member that holds result number `index`."""
+    def place(self, index: int, component: str = COMPONENT) -> str:
+        """Return the member that holds result number `index`.
+
+        `component` is how a component of a vector is written, as in `component_of`.
+        """
+        if self.vectors:
+            return component_of(component, self.vectors[index // 3], index % 3)
         if self.layout == "array":
             return f"{self.member}[{index}]"
         if self.layout == "struct":
@@ -42,8 +63,9 @@ class Parameter:
     `name` is the identifier that appears in the shader. `domain` is the closed interval (low, high)
     that the function is made for, in `unit`; for an array it holds for each element. `size` is None
     for a scalar and n for an array of n numbers. If the array is the content of a structure, that
-    is `record`. Raises ValueError for a name that is not an identifier, for an empty or infinite
-    domain, and for a size below one.
+    is `record`. `shape` says whether the n numbers are an array, one vector (n = 3) or an array of
+    n/3 vectors of three. Raises ValueError for a name that is not an identifier, for an empty or
+    infinite domain, for a size below one, and for one that vectors cannot have.
     """
 
     name: str
@@ -51,6 +73,7 @@ class Parameter:
     unit: str = "1"
     size: int | None = None
     record: Record | None = None
+    shape: Shape = "array"
 
     def __post_init__(self):
         require_identifier("parameter", self.name)
@@ -61,6 +84,24 @@ class Parameter:
                 "allowed: (low, high), finite, low <= high"
             )
         _require_count(f"size of {self.name}", self.size)
+        size = self.size or 0
+        fits = {"array": True, "vector": size == 3, "vectors": size > 0 and size % 3 == 0}
+        if not fits[self.shape]:
+            raise ValueError(
+                f"size of {self.name} is {self.size!r}; allowed: 3 for a vector, a multiple of 3 "
+                "for vectors"
+            )
+
+    def places(self, component: str = COMPONENT) -> tuple[str, ...]:
+        """Return how each number is written in code; `component` as in `component_of`."""
+        if self.size is None:
+            return (self.name,)
+        if self.shape == "array":
+            return tuple(f"{self.name}[{index}]" for index in range(self.size))
+        vectors = [self.name]
+        if self.shape == "vectors":
+            vectors = [f"{self.name}[{index}]" for index in range(self.size // 3)]
+        return tuple(component_of(component, each, k) for each in vectors for k in range(3))
 
 
 @dataclass(frozen=True)

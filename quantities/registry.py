@@ -21,6 +21,8 @@ _SPLIT = "quantities.microfacet.fresnel_split"
 _AVERAGE = "quantities.microfacet.average_albedo"
 _FILTERED = "quantities.maps.filtered_width"
 _SKIN = "quantities.skin.scattering"
+_LOBES = ("quantities.skin.lobes", "LOBE_QUANTITIES")
+_BANDS = ("quantities.skin.bands", "BAND_QUANTITIES")
 # The built-in quantities by name, in the order in which they are listed: the module that declares
 # each, and the name there of the quantity, or of several quantities.
 _BUILT_IN = {
@@ -41,6 +43,14 @@ _BUILT_IN = {
     "skin-sphere-red": (_SKIN, "SKIN_QUANTITIES"),
     "skin-sphere-green": (_SKIN, "SKIN_QUANTITIES"),
     "skin-sphere-blue": (_SKIN, "SKIN_QUANTITIES"),
+    "skin-lobe-cylinder": _LOBES,
+    "skin-lobe-sphere": _LOBES,
+    "skin-band-1-red": _BANDS,
+    "skin-band-1-green": _BANDS,
+    "skin-band-1-blue": _BANDS,
+    "skin-band-2-red": _BANDS,
+    "skin-band-2-green": _BANDS,
+    "skin-band-2-blue": _BANDS,
 }
 # What is exported, but not fitted, by the first part of its name: samplers and their densities,
 # decoders of textures, operators of detail maps, and curvature from light.

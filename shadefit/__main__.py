@@ -41,7 +41,9 @@ def main() -> None:
         signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
         threading.Thread(target=_wait_for_signal, args=[reader, handled], daemon=True).start()
     from shadefit.cli import main as run
+    from shadefit.compilation_cache import use_cache
 
+    use_cache()
     run()
 
 

@@ -2,7 +2,6 @@
 
 import functools
 import inspect
-import os
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
@@ -31,8 +30,12 @@ from shadefit.commands.render import render
 from shadefit.commands.report import report
 from shadefit.commands.search import search
 from shadefit.commands.verify import verify
-from shadefit.encoding import install
+from shadefit.encoding import install, visible
+from shadefit.environment import settle
 from shadefit.standard_streams import READER_GONE, OutputError, end, end_without_output
+
+# Characters; a path may have this many.
+_LONGEST_WORD = 400
 
 app = typer.Typer(
     name="shadefit",
@@ -180,10 +183,7 @@ def _global(
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line. Bad input gives one line on standard error and exit status 2."""
-    # The references need float64. A setting of the environment is overwritten.
-    os.environ["JAX_ENABLE_X64"] = "1"
-    # With more threads, the order of sums, and so their last digits, would depend on the machine.
-    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    settle()
     install()
     given = sys.argv[1:] if arguments is None else arguments
     try:
@@ -206,13 +206,19 @@ def main(arguments: list[str] | None = None) -> None:
         if loader is None or not isinstance(error, loader.ProblemFileError):
             raise
         # The user's own traceback, as it is.
-        print(error, file=sys.stderr)
+        print(visible(str(error)), file=sys.stderr)
         end(2)
     end(status or 0)
 
 
 def _fail(message: str, status: int) -> None:
     # Typer puts the kind of an error into its message; it does not help the user.
-    words = message.replace(": Value error, ", ": ").split()
-    print(f"shadefit: {' '.join(words)}", file=sys.stderr)
+    words = visible(message.replace(": Value error, ", ": ")).split()
+    print(f"shadefit: {' '.join(map(_shortened, words))}", file=sys.stderr)
     end(status)
+
+
+def _shortened(word: str) -> str:
+    """Return a word of a message, without its middle if nobody could read it as a whole."""
+    half = _LONGEST_WORD // 2
+    return word if len(word) <= _LONGEST_WORD else f"{word[:half]}…{word[-half:]}"

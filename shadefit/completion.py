@@ -10,10 +10,11 @@ from pathlib import Path
 _TABLES = Path(__file__).parent.parent / "coefficients" / "tables"
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo")
 _MAPS = ("sggx-filter", "sggx-filter-axes")
-_SKIN = tuple(
-    f"skin-{surface}-{channel}"
-    for surface in ("cylinder", "sphere")
-    for channel in ("red", "green", "blue")
+_CHANNELS = ("red", "green", "blue")
+_SKIN = (
+    *(f"skin-{surface}-{channel}" for surface in ("cylinder", "sphere") for channel in _CHANNELS),
+    *("skin-lobe-cylinder", "skin-lobe-sphere"),
+    *(f"skin-band-{band}-{channel}" for band in (1, 2) for channel in _CHANNELS),
 )
 # The quantities in the order of the registry, and the closed forms to export.
 QUANTITIES = ("ps", "g", "q", "r", "velvet", *_GGX, *_MAPS, *_SKIN)
@@ -34,10 +35,18 @@ _BLENDS = ("overlay", "smooth-overlay", "symmetric-overlay")
 _OPERATORS = tuple(f"detail/{name}{end}" for name in _BLENDS for end in ("", "-inverse"))
 _CURVATURES = tuple(
     f"curvature/{name}"
-    for name in ("from-light", "effective", "equivalent-cylinder", "pack", "unpack")
+    for name in (
+        "from-light",
+        "along-light",
+        "effective",
+        "equivalent-cylinder",
+        "pack",
+        "unpack",
+    )
 )
+_AMBIENT = tuple(f"ambient/{name}" for name in ("talk", "cheap", "recommended"))
 # Functions that are exported, but not fitted.
-FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES)
+FUNCTIONS = (*_SAMPLERS, *_DECODERS, *_OPERATORS, *_CURVATURES, *_AMBIENT)
 
 
 def complete_quantity(incomplete: str) -> list[str]:

@@ -7,10 +7,14 @@ signs of `ascii_text` are written instead, and '?' for what has none.
 import codecs
 import json
 import sys
+import unicodedata
 from typing import Any
 
 # Signs of tables and of progress that `ascii_text` does not know.
 _LINES = str.maketrans({"─": "-", "━": "-", "│": "|", "•": "*", "…": "..."})
+# General categories of characters that steer a terminal or are not seen: control codes, changes of
+# the direction of writing, halves of characters, and breaks of lines.
+_HIDDEN = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 _HANDLER = "shadefit-ascii"
 
 
@@ -30,10 +34,33 @@ def shown(text: str, encoding: str | None = None) -> str:
     return text.encode(encoding, _HANDLER).decode(encoding)
 
 
+def visible(text: str) -> str:
+    r"""Return text in which hidden characters are written as in Python, \x1b; line breaks stay.
+
+    Names of files may have such characters, and would steer the terminal or seem to be others.
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(
+        each.encode("unicode_escape").decode("ascii") if _is_hidden(each) else each for each in text
+    )
+
+
 def shown_json(text: str) -> str:
-    """Return JSON text that reads back the same: characters that are lacking are escaped."""
+    """Return JSON text that reads back the same: hidden and lacking characters are escaped."""
     encoding = _encoding(sys.stdout)
-    return "".join(each if has_all(each, encoding) else json.dumps(each)[1:-1] for each in text)
+    return "".join(
+        json.dumps(each)[1:-1] if _is_hidden(each) or not has_all(each, encoding) else each
+        for each in text
+    )
+
+
+def _is_hidden(character: str) -> bool:
+    return (
+        not character.isprintable()
+        and character != "\n"
+        and unicodedata.category(character) in _HIDDEN
+    )
 
 
 def has_all(text: str, encoding: str | None) -> bool:

@@ -18,6 +18,7 @@ from shadefit.material_outputs import (
 )
 from shadefit.records import (
     AmbientErrors,
+    AmbientModelErrors,
     CertifiedTable,
     ComparisonRecord,
     CostedTable,
@@ -190,6 +191,7 @@ class AmbientOutput(Whole):
     command: Literal["ambient"] = "ambient"
     points: Count
     errors: list[AmbientErrors]
+    models: list[AmbientModelErrors]
     energy: list[LargestRadiance]
     rms_without_symmetry: dict[str, Size]
     files: list[str]

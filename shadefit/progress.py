@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import Progress, ProgressColumn, SpinnerColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
-from shadefit.encoding import has_all
+from shadefit.encoding import has_all, visible
 
 _SPINNER = "dots"
 # The same without characters that an encoding may lack.
@@ -31,7 +31,7 @@ class Stages:
 
     def begin(self, text: str, total: int | None = None) -> "Stage":
         """Start a stage. `total` is the number of its steps, if it is known."""
-        return Stage(self.progress, self.progress.add_task(text, total=total))
+        return Stage(self.progress, self.progress.add_task(visible(text), total=total))
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Stage:
 
     def show(self, text: str, done: int | None = None, total: int | None = None) -> None:
         """Say what is being done now; `done` and `total` count steps."""
-        self.progress.update(self.task, description=text, completed=done, total=total)
+        self.progress.update(self.task, description=visible(text), completed=done, total=total)
 
     def advance(self) -> None:
         """Count one step more as done."""
@@ -52,7 +52,8 @@ class Stage:
     def end(self, text: str | None = None) -> None:
         """Stop the clock of the stage."""
         total = self.progress.tasks[self.task].total or 1
-        self.progress.update(self.task, description=text, completed=total, total=total)
+        said = None if text is None else visible(text)
+        self.progress.update(self.task, description=said, completed=total, total=total)
 
 
 @contextmanager
@@ -60,7 +61,12 @@ def stages() -> Generator[Stages]:
     """Show on standard error what a long command is doing. Show nothing if it is no terminal."""
     terminal = sys.stderr.isatty()
     spinner = _SPINNER if has_all("⠋", getattr(sys.stderr, "encoding", None)) else _PLAIN_SPINNER
-    columns = (SpinnerColumn(spinner), TextColumn("{task.description}"), _Steps(), _Clock())
+    columns = (
+        SpinnerColumn(spinner),
+        TextColumn("{task.description}", markup=False),
+        _Steps(),
+        _Clock(),
+    )
     console = Console(stderr=True)
     # Rich would send what is printed to standard output to the console, which is standard error.
     with Progress(
@@ -91,7 +97,7 @@ def line_in_pipe(pause: float = _PAUSE) -> Callable[[str, int, int], None]:
         left = time_left(now - began, float(done), float(total))
         estimate = "" if left is None else f", about {clock(left)} left"
         steps = f"; {done} of {total}, {clock(now - began)}{estimate}" if total else ""
-        print(f"{text}{steps}", file=sys.stderr)
+        print(visible(f"{text}{steps}"), file=sys.stderr)
 
     return tell
 

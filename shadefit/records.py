@@ -252,6 +252,25 @@ class AmbientErrors(Part):
     where: Place
 
 
+class AmbientModelErrors(Part):
+    """A model of the layer with some P_s and G: errors by light relative to the mean radiance.
+
+    `scattered` and `scattering` name P_s and G. `brightest` is the largest radiance in uniform
+    light of radiance one, `least` the least one in any light. `operations` are those of the
+    exported function by its parts.
+    """
+
+    model: str
+    meaning: str
+    scattered: str
+    scattering: str
+    rms: dict[str, Size]
+    largest: dict[str, Size]
+    brightest: Number
+    least: Number
+    operations: dict[str, Count]
+
+
 class LargestRadiance(Part):
     """The largest radiance in uniform light of radiance one, and where it is."""
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from coefficients.files import OUTPUT
-from shadefit.encoding import shown, shown_json
+from shadefit.encoding import shown, shown_json, visible
 from shadefit.layout import RULE, laid_out, wrapped
 
 # Without a terminal there is no width to fit into: every table has its columns side by side.
@@ -26,6 +26,12 @@ def apart_from(*files: Path | None) -> Generator[None]:
     """Print to standard error if one of the files that a command writes is standard output."""
     with redirect_stdout(sys.stderr) if OUTPUT in files else nullcontext():
         yield
+
+
+def print_lines(*lines: object) -> None:
+    """Print lines that may contain names of files. Hidden characters are escaped."""
+    for line in lines:
+        print(visible(str(line)))
 
 
 def print_json(output: BaseModel) -> None:
@@ -45,23 +51,27 @@ def print_table(
     """
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _UNLIMITED
     header, lines = laid_out(
-        [shown(each) for each in columns],
-        [[shown(each) for each in row] for row in rows],
+        [_cell(each) for each in columns],
+        [[_cell(each) for each in row] for row in rows],
         below,
         width,
     )
-    text = [(line, "italic") for line in wrapped(shown(title), width)]
+    text = [(line, "italic") for line in wrapped(_cell(title), width)]
     text += [(line, "bold") for line in header]
     if header:
         text.append((shown(RULE) * max(map(len, [*header, *lines])), "dim"))
     text += [(line, "") for line in lines]
     widest = min(width, _WIDEST_NOTE) if sys.stdout.isatty() else width
     for each in note.splitlines():
-        text += [(line, "dim") for line in wrapped(shown(each), widest)]
+        text += [(line, "dim") for line in wrapped(_cell(each), widest)]
     console = Console(highlight=False, markup=False, soft_wrap=True)
     for line, style in text:
         console.print(Text(line, style))
     console.print()
+
+
+def _cell(text: str) -> str:
+    return shown(visible(text))
 
 
 def place(where: dict[str, float]) -> str:

@@ -15,6 +15,8 @@ from shading.fuzz.ambient import ambient_layer as ambient_layer
 from shading.fuzz.ambient import ambient_layer_lit as ambient_layer_lit
 from shading.fuzz.ambient import ambient_radiance as ambient_radiance
 from shading.fuzz.ambient import lit_fraction as lit_fraction
+from shading.fuzz.ambient_models import AMBIENT_MODELS as AMBIENT_MODELS
+from shading.fuzz.ambient_models import AmbientModel as AmbientModel
 from shading.fuzz.brdf import asymmetry_from_spread as asymmetry_from_spread
 from shading.fuzz.brdf import base_attenuation as base_attenuation
 from shading.fuzz.brdf import escape as escape
@@ -25,7 +27,15 @@ from shading.fuzz.deferred import wrapped_cosine as wrapped_cosine
 from shading.fuzz.layer import optical_path as optical_path
 from shading.fuzz.layer import penetration as penetration
 from shading.fuzz.layer import scattering_kernel as scattering_kernel
+from shading.fuzz.layer_light import LayerLight as LayerLight
+from shading.fuzz.layer_light import LayerView as LayerView
+from shading.fuzz.layer_light import layer_radiance as layer_radiance
+from shading.fuzz.layer_light import light_weights as light_weights
+from shading.fuzz.lit_moments import LitMoments as LitMoments
+from shading.fuzz.lit_moments import lit_moments as lit_moments
 from shading.fuzz.phase import fiber_phase_function as fiber_phase_function
+from shading.fuzz.phase import reciprocal_phase_function as reciprocal_phase_function
+from shading.fuzz.phase import reciprocal_scale as reciprocal_scale
 from shading.fuzz.phase import velvet_lobe as velvet_lobe
 from shading.fuzz.phase import velvet_phase_function as velvet_phase_function
 from shading.harmonics import harmonics as harmonics

@@ -21,9 +21,11 @@ jax.jit(lambda x: x + 1)(0.0)
 del os.environ["XLA_FLAGS"]
 if _given is not None:
     os.environ["XLA_FLAGS"] = _given
+# Commands that tests start leave the user's cache of compiled programs alone.
+os.environ["SHADEFIT_CACHE"] = "off"
 
 SLOW_NAMES = re.compile(
-    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue))|sggx-filter|ggx-(scale|bias)"
+    r"skin-(cylinder-(green|blue)|sphere-(red|green|blue)|lobe|band)|sggx-filter|ggx-(scale|bias)"
 )
 # Of the best tables, these stand for all in sweeps: one for each kind of form.
 STANDING_FOR_ALL = re.compile(
@@ -55,10 +57,10 @@ settings.load_profile("repeatable")
 def pytest_collection_modifyitems(items):
     """Call slow what takes long, or what another test stands for.
 
-    The page of tests in a browser takes half a minute to make. The six quantities of skin differ in
-    numbers only: by default, red light on a cylinder stands for all. The exact values of filtered
-    lobes, and of A and B of GGX, take long to compile. Of a sweep over all best tables, some stand
-    for the others.
+    The page of tests in a browser takes half a minute to make. The quantities of skin are much
+    alike: by default, red light on a cylinder stands for all. The exact values of filtered lobes,
+    and of A and B of GGX, take long to compile. Of a sweep over all best tables, some stand for the
+    others.
     """
     for item in items:
         is_slow = "browser" in getattr(item, "fixturenames", ()) or SLOW_NAMES.search(item.name)

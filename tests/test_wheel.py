@@ -149,19 +149,47 @@ def test_a_quantity_is_evaluated(run):
     assert {table["kind"] for table in found["tables"]} == {"published", "refitted", "best"}
 
 
-def test_a_table_is_refitted_into_a_folder_and_only_there(run, tmp_path):
-    status, out, error = run("refit", "q")
-    assert (status, out) == (2, "")
-    assert error == "shadefit: q comes with an installed package: give a folder by --out\n"
-    assert list(tmp_path.iterdir()) == []
+@pytest.mark.parametrize("folder", ["empty", "looks like a checkout"])
+def test_a_table_is_refitted_into_a_folder_and_only_there(run, tmp_path, folder):
+    kept = []
+    if folder != "empty":
+        # The folder where the command runs does not matter.
+        (tmp_path / "pyproject.toml").write_text('[project]\nname = "shadefit"\n')
+        (tmp_path / "coefficients" / "tables" / "fuzz" / "refit").mkdir(parents=True)
+        kept = ["coefficients", "pyproject.toml"]
+    for name in ("q", "best/q-9"):
+        status, out, error = run("refit", name)
+        assert (status, out) == (2, "")
+        assert (
+            error == f"shadefit: {name} comes with an installed package: give a folder by --out\n"
+        )
+    assert not list(tmp_path.rglob("*.json"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == kept
     assert run("refit", "q", "--out", str(tmp_path / "tables"))[0] == 0
     # On the grid of the packaged table it is the same table.
-    kept = ROOT / "coefficients" / "tables" / "fuzz" / "refit" / "q.json"
+    packaged = ROOT / "coefficients" / "tables" / "fuzz" / "refit" / "q.json"
     made = json.loads((tmp_path / "tables" / "q.json").read_text())
     assert made["coefficients"] == pytest.approx(
-        json.loads(kept.read_text())["coefficients"], rel=1e-9
+        json.loads(packaged.read_text())["coefficients"], rel=1e-9
     )
-    assert [path.name for path in tmp_path.iterdir()] == ["tables"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [*kept, "tables"]
+
+
+def test_every_command_that_writes_leaves_the_package_alone(run, tmp_path):
+    """The fixture `installed` compares the whole package afterwards."""
+    for command in (
+        ["search", "q", "--budget", "4"],
+        ["certify", "q", "--out", "proven"],
+        ["bake", "q", "--size", "8", "--format", "csv"],
+        ["new", "lobe"],
+    ):
+        assert run(*command)[0] == 0, command
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "build",
+        "lobe.py",
+        "proven",
+        "q.csv",
+    ]
 
 
 def test_code_is_exported(run, tmp_path):

@@ -39,6 +39,6 @@ def write_exr(channels: dict[str, np.ndarray], pixel: str = "<f4") -> bytes:
     line = 8 + size * width * len(names)
     first = len(header) + 8 * height
     offsets = struct.pack(f"<{height}Q", *(first + line * y for y in range(height)))
-    stacked = np.stack([channels[name] for name in names], axis=1).astype(pixel)
+    stacked = np.stack([channels[name].astype(pixel) for name in names], axis=1)
     rows = [struct.pack("<2i", y, line - 8) + stacked[y].tobytes() for y in range(height)]
     return header + offsets + b"".join(rows)

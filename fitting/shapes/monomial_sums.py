@@ -2,6 +2,7 @@
 
 import functools
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,6 +12,8 @@ import numpy as np
 Exponents = tuple[int, ...]
 # A coefficient that is 1: no product is needed with it.
 ONE = 1.0
+# The most monomials of a sum: a table has no more coefficients.
+MAX_MONOMIALS = 4096
 
 
 def powers(
@@ -24,9 +27,19 @@ def powers(
     """
     if degree < 0 or variables < 1:
         raise ValueError(f"powers({degree}, {variables}): allowed are 0 or more, and 1 or more")
+    # The first condition keeps the second one from numbers of many digits.
+    if degree >= MAX_MONOMIALS or _count(degree, variables, total) > MAX_MONOMIALS:
+        raise ValueError(
+            f"degree {degree} in {variables} variables: allowed are at most {MAX_MONOMIALS} "
+            "monomials"
+        )
     if variables == 1:
         return tuple(range(degree + 1))
     return monomials(degree, variables, total)
+
+
+def _count(degree: int, variables: int, total: bool) -> int:
+    return math.comb(degree + variables, variables) if total else (degree + 1) ** variables
 
 
 def monomials(degree: int, variables: int, total: bool) -> tuple[Exponents, ...]:

@@ -21,8 +21,8 @@ from jax import Array
 from fitting.form import Form
 from integrals.compilation import jit_for_few_calls
 
-# Nodes of each axis in a block.
-BLOCK = 65
+# The nodes of the first and of the second axis in a block.
+BLOCK = 65, 17
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Nodes:
             squares[a, t] = block.squares.T
             worst = int(np.argmax(block.largest))
             if block.largest[worst] > largest:
-                row, column = np.unravel_index(block.index[worst], (BLOCK, len(self.inner)))
+                row, column = np.unravel_index(block.index[worst], (BLOCK[0], len(self.inner)))
                 place = (self.firsts[a][row], self.seconds[t][worst], *self.inner[column])
                 largest, where = float(block.largest[worst]), np.array(place, float)
         return NodeErrors(squares, largest, where)
@@ -104,12 +104,15 @@ class Nodes:
 
         A block at the end of an axis is filled with copies of the last node, which are cut off.
         """
-        for left in range(0, len(self.seconds), BLOCK):
-            t = slice(left, min(left + BLOCK, len(self.seconds)))
-            for top in range(0, len(self.firsts), BLOCK):
-                a = slice(top, min(top + BLOCK, len(self.firsts)))
-                firsts, seconds = _filled(self.firsts[a], 0), _filled(self.seconds[t], 0)
-                rows = _filled(_filled(np.swapaxes(results[a, t], 0, 1), 0), 1)
+        height, width = BLOCK
+        for left in range(0, len(self.seconds), width):
+            t = slice(left, min(left + width, len(self.seconds)))
+            for top in range(0, len(self.firsts), height):
+                a = slice(top, min(top + height, len(self.firsts)))
+                firsts = _filled(self.firsts[a], 0, height)
+                seconds = _filled(self.seconds[t], 0, width)
+                rows = np.swapaxes(results[a, t], 0, 1)
+                rows = _filled(_filled(rows, 0, width), 1, height)
                 block = _solved(
                     *(self.form, self.exact, self.count),
                     *(firsts, seconds, self.inner, self.weights, rows),
@@ -177,7 +180,7 @@ def _solved(
     return jax.lax.map(at_node, (seconds, rows))
 
 
-def _filled(values: np.ndarray, axis: int) -> np.ndarray:
-    """Repeat the last element along an axis until there are `BLOCK`."""
-    missing = BLOCK - values.shape[axis]
+def _filled(values: np.ndarray, axis: int, count: int) -> np.ndarray:
+    """Repeat the last element along an axis until there are `count`."""
+    missing = count - values.shape[axis]
     return np.concatenate([values, np.repeat(values.take([-1], axis), missing, axis)], axis)

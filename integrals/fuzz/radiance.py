@@ -13,7 +13,6 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from integrals.fuzz.ps import scattered_fraction
 from integrals.reference import require_float64
 from integrals.rules.hemisphere import AZIMUTHS, STEP, hemisphere_rule
 from shading import (
@@ -25,6 +24,7 @@ from shading import (
     penetration,
     scattering_kernel,
 )
+from shading.fuzz.lit_cone import scattered_fraction
 from shading.types import Scalar
 
 

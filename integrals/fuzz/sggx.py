@@ -9,10 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from integrals.fuzz.cubic_root import positive_root, tangent_step
 from integrals.reference import Estimate
 from integrals.rules.interval import checked_rule, gauss_legendre
 from shading import direction, normal_distribution, projected_area
+from shading.cubic_root import positive_root, tangent_step
 from shading.types import Matrix, Scalar, Vector
 
 # Many steps, because the start may be far above the root.

@@ -29,7 +29,8 @@ _SURFACES = {
 }
 
 
-def _angle(cosine) -> Array:
+def angle_of(cosine) -> Array:
+    """Return the angle of a cosine in [−1, 1], with finite derivatives."""
     c = cosine * _SHRINK
     return jnp.arctan2(jnp.sqrt((1 - c) * (1 + c)), c)
 
@@ -44,13 +45,13 @@ def channel_reference(surface: str, name: str, profile: GaussianProfile) -> Refe
 
     @leg(*AXES)
     def quadrature(cosine, curvature) -> Estimate:
-        theta, w = _angle(cosine), weights(profile, curvature)[0]
+        theta, w = angle_of(cosine), weights(profile, curvature)[0]
         lobes = [lobe(theta, s * curvature, nodes=_NODES) for s in deviations]
         return Estimate(w @ jnp.stack(lobes), jnp.full((), _ERROR))
 
     @leg(*AXES)
     def monte_carlo(cosine, curvature, **options) -> Estimate:
-        theta, w = _angle(cosine), weights(profile, curvature)[0]
+        theta, w = angle_of(cosine), weights(profile, curvature)[0]
         found = [by_sampling(theta, s * curvature, **options) for s in deviations]
         return Estimate(
             w @ jnp.stack([each.value for each in found]),

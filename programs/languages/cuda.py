@@ -3,7 +3,7 @@
 from programs.languages.c_family import CPP_WORDS, MATH, SELECTION, reciprocal_root, suffixed
 from programs.languages.c_names import C_MACROS, CPP_LIBRARY
 from programs.languages.shading_names import CUDA_LIBRARY, CUDA_WORDS
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 # On the device, fminf is one instruction; the function exists on the host too.
 _MATH = MATH | {"min": "fmin", "max": "fmax"}
@@ -27,6 +27,7 @@ LANGUAGE = Language(
     ),
     library=CPP_LIBRARY | CUDA_LIBRARY,
     vectors={"float": "float4"},
+    triples=typed_triples({"float": "float3", "double": "double3"}),
     namespaces=True,
     prologue={precision: ("#include <math.h>",) for precision in ("float", "double")},
     array_argument="const {type} (&{name})[{size}]",

@@ -2,7 +2,7 @@
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
 from programs.languages.shading_names import GLSL_LIBRARY, GLSL_WORDS
-from programs.languages.spelling import Language, Spelling, spell, words
+from programs.languages.spelling import Language, Spelling, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     SHADING | {"rsqrt": "inversesqrt", "atan2": Spelling("atan({0}, {1})")} | SELECTION
@@ -33,6 +33,7 @@ LANGUAGE = Language(
     library=GLSL_LIBRARY,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "clamp({0}, {1}, {2})")),
     vectors={"half": "f16vec4", "float": "vec4", "double": "dvec4"},
+    triples=typed_triples({"half": "f16vec3", "float": "vec3", "double": "dvec3"}),
     prologue={
         "half": ("#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require",),
         "float": (),

@@ -7,6 +7,7 @@ Each variable states its precision, so that the code does not depend on a defaul
 from dataclasses import replace
 
 from programs.languages.glsl import LANGUAGE as GLSL
+from programs.languages.spelling import typed_triples
 
 _TYPES = {"half": "mediump float", "float": "highp float"}
 
@@ -20,5 +21,6 @@ LANGUAGE = replace(
     clamps={precision: GLSL.clamps[precision] for precision in _TYPES},
     prologue=dict.fromkeys(_TYPES, ()),
     vectors={"half": "mediump vec4", "float": "highp vec4"},
+    triples=typed_triples({"half": "mediump vec3", "float": "highp vec3"}),
     table_opening="const {type} {name}[{size}] = float[{size}](",
 )

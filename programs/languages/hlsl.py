@@ -2,7 +2,7 @@
 
 from programs.languages.c_family import C_WORDS, SELECTION, SHADING
 from programs.languages.shading_names import HLSL_LIBRARY, HLSL_WORDS
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 from programs.precision import PRECISIONS
 
 FUNCTIONS = spell(SHADING | {"atan2": "atan2", "rsqrt": "rsqrt"} | SELECTION)
@@ -40,6 +40,7 @@ LANGUAGE = Language(
     library=HLSL_LIBRARY,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     vectors={"half": "half4", "float": "float4", "double": "double4"},
+    triples=typed_triples({"half": "half3", "float": "float3", "double": "double3"}),
     namespaces=True,
     prologue=dict.fromkeys(PRECISIONS, ()),
     array_argument="in {type} {name}[{size}]",

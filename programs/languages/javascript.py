@@ -42,6 +42,7 @@ LANGUAGE = Language(
     array_head="function {function}({arguments})",
     local_variable="const {name} = {value};",
     return_all="return [{values}];",
+    return_three="[{values}]",
     table_opening="const {name} = [",
     table_closing="];",
 )

@@ -3,7 +3,7 @@
 from programs.languages.c_family import CPP_WORDS, SELECTION, SHADING
 from programs.languages.c_names import C_LIBRARY, C_MACROS
 from programs.languages.shading_names import METAL_LIBRARY, METAL_WORDS
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     {
@@ -35,6 +35,7 @@ LANGUAGE = Language(
     scalar_head="inline {type} {function}({arguments})",
     array_head="inline void {function}({arguments})",
     vectors={"half": "half4", "float": "float4"},
+    triples=typed_triples({"half": "half3", "float": "float3"}),
     namespaces=True,
     prologue={precision: ("#include <metal_stdlib>",) for precision in ("half", "float")},
     array_argument="thread const {type} (&{name})[{size}]",

@@ -2,7 +2,7 @@
 
 from programs.languages.c_family import SELECTION, SHADING
 from programs.languages.shading_names import OSL_LIBRARY, OSL_MACROS
-from programs.languages.spelling import Language, spell, words
+from programs.languages.spelling import Language, spell, typed_triples, words
 
 LANGUAGE = Language(
     key="osl",
@@ -29,6 +29,7 @@ LANGUAGE = Language(
     prologue={"float": ()},
     boolean="int",
     array_result="output {type} {name}[{size}]",
+    triples=typed_triples({"float": "vector"}, "{vector}[{index}]"),
     local_variable="{type} {name} = {value};",
     table_opening="{type} {name}[{size}] = {{",
 )

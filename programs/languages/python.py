@@ -52,10 +52,12 @@ LANGUAGE = Language(
     local_variable="{name} = {value}",
     return_statement="return {value}",
     return_all="return ({values})",
+    return_three="({values})",
     table_opening="{name} = (",
     table_closing=")",
     scalar_conversion="{name} = np.asarray({name}, {type})",
     array_conversion="{name} = [np.asarray(each, {type}) for each in {name}]",
+    vectors_conversion="{name} = [[np.asarray(k, {type}) for k in each] for each in {name}]",
     typed_literal="{type}({})",
     parenthesize_lines=True,
 )

@@ -6,6 +6,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from programs.functions import COMPONENT
 from programs.precision import PRECISIONS
 
 
@@ -35,6 +36,33 @@ class Spelling:
     template: str
     precedence: Precedence = Precedence.ATOM
     atoms: bool = False
+
+
+@dataclass(frozen=True)
+class Triple:
+    """How a vector of three numbers is written.
+
+    `kind` is its type; None: it is an array of three numbers. `component` is a template with
+    {vector}, {letter} and {index} (`programs.functions.component_of`).
+    """
+
+    kind: str | None = None
+    component: str = "{vector}[{index}]"
+
+    def type_and_extent(self, real: str, count: int | None = None) -> tuple[str, str | None]:
+        """Return the type of the elements and the size of an array that stands for vectors.
+
+        `count` is the number of vectors, or None for one that is in no array. The size is None if
+        no array is needed. In C an array of arrays has two sizes, of which a template knows one.
+        """
+        if self.kind is not None:
+            return self.kind, None if count is None else str(count)
+        return real, "3" if count is None else f"{count}][3"
+
+
+def typed_triples(types: Mapping[str, str], component: str = COMPONENT) -> dict[str, Triple]:
+    """Return the vectors of three numbers of each precision, from the names of their types."""
+    return {precision: Triple(kind, component) for precision, kind in types.items()}
 
 
 @dataclass(frozen=True)
@@ -84,11 +112,15 @@ class Language:
     store_statement: str = "{name}[{index}] = {value};"
     # returns several results together: {values}; None: they are stored one by one
     return_all: str | None = None
+    # three of the results that are returned together: {values}
+    return_three: str = "{values}"
     # precision -> how max(min(x, {2}), {1}) is written: a template for any two ends, and
     # one for 0 and 1
     clamps: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     # precision -> type of a vector of four numbers
     vectors: Mapping[str, str] = field(default_factory=dict)
+    # precision -> vector of three numbers; without, it is an array of three numbers
+    triples: Mapping[str, Triple] = field(default_factory=dict)
     # around the members of a structure: {name}; None: the language has tuples or arrays instead
     record_opening: str | None = "struct {name} {{"
     record_closing: str = "}};"
@@ -106,12 +138,17 @@ class Language:
     # statements at the start of a body that convert an argument to the precision: {type}, {name}
     scalar_conversion: str | None = None
     array_conversion: str | None = None
+    vectors_conversion: str | None = None
     # a literal whose surroundings do not show its type: {type}, and {} for the literal
     typed_literal: str = "{}"
     # whether an expression of several lines must be in parentheses
     parenthesize_lines: bool = False
     # the longest program that can reasonably be printed
     max_operations: int = 20_000
+
+    def triple(self, precision: str) -> Triple:
+        """Return how a vector of three numbers is written in a precision."""
+        return self.triples.get(precision, Triple())
 
 
 def spell(functions: Mapping[str, str | Spelling]) -> dict[str, Spelling]:

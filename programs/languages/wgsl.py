@@ -2,7 +2,7 @@
 
 from programs.languages.c_family import SHADING
 from programs.languages.shading_names import WGSL_LIBRARY
-from programs.languages.spelling import Language, Spelling, spell, words
+from programs.languages.spelling import Language, Spelling, spell, typed_triples, words
 
 _FUNCTIONS = spell(
     SHADING
@@ -42,6 +42,7 @@ LANGUAGE = Language(
     library=WGSL_LIBRARY,
     clamps=dict.fromkeys(("half", "float"), ("clamp({0}, {1}, {2})", "saturate({0})")),
     vectors={"half": "vec4<f16>", "float": "vec4<f32>"},
+    triples=typed_triples({"half": "vec3<f16>", "float": "vec3<f32>"}),
     record_number="{name}: {type},",
     record_array="{name}: array<{type}, {size}>,",
     record_closing="}}",

@@ -50,7 +50,8 @@ def taken_names(
         own.append(function.result_name)
     for name in [function.name, *types]:
         _require(language, name, language.reserved | language.library | called)
-    for name in own:
+    members = function.record.vectors if function.record else ()
+    for name in [*own, *members]:
         _require(language, name, language.reserved | called | later)
     for name in [*own, *types]:
         if name in functions:

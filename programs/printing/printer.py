@@ -1,9 +1,9 @@
 """Printing functions as source code: any JAX function of scalars, in any of the languages."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from programs.functions import Function, Parameter, input_names
+from programs.functions import Function, Parameter
 from programs.languages import Language
 from programs.languages import language as find_language
 from programs.operations import OPERATIONS
@@ -19,7 +19,12 @@ from programs.printing.expression import (
 from programs.printing.identifiers import free_name
 from programs.printing.line_breaking import INDENT, Break, Tokens, break_lines, nested
 from programs.printing.lowering import lowered
-from programs.printing.records import empty_components, record_declarations, record_of
+from programs.printing.records import (
+    empty_components,
+    in_threes,
+    record_declarations,
+    record_of,
+)
 from programs.printing.statement_choice import choose_statements
 from programs.tracing.tracer import trace
 
@@ -119,7 +124,7 @@ def _function(
             f"allowed in {language.name}: at most {language.max_operations}"
         )
     statements = choose_statements(
-        program, _written_inputs(function, language), language, precision, taken
+        program, _written_inputs(function, language, precision), language, precision, taken
     )
     taken = taken | set(statements.names.values())
     pool = ConstantPool(free_name("coefficients", taken)) if constants == "table" else None
@@ -139,7 +144,7 @@ def _function(
     body += _results(function, context)
 
     lines = function_comment(function, language)
-    lines += break_lines(_signature(function, language, kind), "")
+    lines += break_lines(_signature(function, language, precision), "")
     lines += [language.body_opening] if language.body_opening is not None else []
     lines += _convert_arguments(function, language, kind)
     lines += _pool_declaration(context, pool) if pool is not None and pool.places else []
@@ -155,13 +160,13 @@ def _results(function: Function, context: WritingContext) -> list[str]:
     lines = []
     record = record_of(language, function)
     if record is not None:
-        name = function.result_name
+        component, name = language.triple(context.precision).component, function.result_name
         lines.append(INDENT + language.record_variable.format(type=record.name, name=name))
         for index, value in enumerate(values):
-            place = f"{name}.{record.place(index)}"
+            place = f"{name}.{record.place(index, component)}"
             lines += _statement(language, _STORE, value, place=place)
-        zero: Tokens = [literal(context, 0.0)]
         for place in empty_components(record, len(values)):
+            zero: Tokens = [literal(context, 0.0)]
             lines += _statement(language, _STORE, zero, place=f"{name}.{place}")
         return lines + _statement(language, language.return_statement, [name])
     if language.return_all is None:
@@ -169,6 +174,8 @@ def _results(function: Function, context: WritingContext) -> list[str]:
             names = {"name": function.result_name, "index": str(index)}
             lines += _statement(language, language.store_statement, value, **names)
         return lines
+    if function.record is not None and function.record.vectors:
+        values = in_threes(values, language)
     together: Tokens = list(nested(values[0]))
     for value in values[1:]:
         together += [",", Break(), *nested(value)]
@@ -187,8 +194,9 @@ def _statement(language: Language, template: str, value: Tokens, **parts: str) -
     return lines
 
 
-def _signature(function: Function, language: Language, kind: str) -> Tokens:
-    arguments = [_argument(language, parameter, kind) for parameter in function.parameters]
+def _signature(function: Function, language: Language, precision: str) -> Tokens:
+    kind = language.types[precision]
+    arguments = [_argument(language, parameter, precision) for parameter in function.parameters]
     head = language.scalar_head
     record = record_of(language, function)
     if record is not None:
@@ -205,21 +213,25 @@ def _signature(function: Function, language: Language, kind: str) -> Tokens:
     return [*tokens, after.format(type=kind)]
 
 
-def _argument(language: Language, parameter: Parameter, kind: str) -> str:
-    record = record_of(language, parameter)
+def _argument(language: Language, parameter: Parameter, precision: str) -> str:
+    kind, record = language.types[precision], record_of(language, parameter)
     if record is not None:
         return language.scalar_argument.format(type=record.name, name=parameter.name)
-    template = language.scalar_argument if parameter.size is None else language.array_argument
-    return template.format(type=kind, name=parameter.name, size=parameter.size)
+    size = None if parameter.size is None else str(parameter.size)
+    if parameter.size is not None and parameter.shape != "array":
+        count = parameter.size // 3 if parameter.shape == "vectors" else None
+        kind, size = language.triple(precision).type_and_extent(kind, count)
+    template = language.scalar_argument if size is None else language.array_argument
+    return template.format(type=kind, name=parameter.name, size=size)
 
 
-def _written_inputs(function: Function, language: Language) -> tuple[str, ...]:
+def _written_inputs(function: Function, language: Language, precision: str) -> tuple[str, ...]:
     """Return how each number of a function's input is written in code."""
     names = []
     for parameter in function.parameters:
         record = record_of(language, parameter)
         if record is None or parameter.size is None:
-            names += input_names(replace(function, parameters=(parameter,), result=None))
+            names += parameter.places(language.triple(precision).component)
         else:
             names += [f"{parameter.name}.{record.place(k)}" for k in range(parameter.size)]
     return tuple(names)
@@ -231,6 +243,8 @@ def _convert_arguments(function: Function, language: Language, kind: str) -> lis
         template = (
             language.scalar_conversion if parameter.size is None else language.array_conversion
         )
+        if parameter.shape == "vectors":
+            template = language.vectors_conversion
         if template is not None:
             lines.append(INDENT + template.format(name=parameter.name, type=kind))
     return lines

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from programs.functions import Function, Parameter, Record
 from programs.languages import Language
-from programs.printing.line_breaking import INDENT
+from programs.printing.line_breaking import INDENT, Break, Tokens
 
 _VECTOR = 4
 
@@ -39,14 +39,27 @@ def record_declarations(
 
 def empty_components(record: Record, size: int) -> list[str]:
     """Return the components of a structure that hold no result: the rest of the last vector."""
-    if record.layout != "vec4":
+    if record.vectors or record.layout != "vec4":
         return []
     return [record.place(index) for index in range(size, -(-size // _VECTOR) * _VECTOR)]
 
 
+def in_threes(values: list[Tokens], language: Language) -> list[Tokens]:
+    """Put the components of each vector together."""
+    opening, closing = language.return_three.split("{values}")
+    return [
+        [opening, *x, ",", Break(), *y, ",", Break(), *z, closing]
+        for x, y, z in zip(values[::3], values[1::3], values[2::3], strict=True)
+    ]
+
+
 def _declaration(language: Language, precision: str, record: Record, size: int) -> list[str]:
     kind, member = language.types[precision], record.member
-    if record.layout == "array":
+    if record.vectors:
+        three, extent = language.triple(precision).type_and_extent(kind)
+        template = language.record_number if extent is None else language.record_array
+        members = [template.format(type=three, name=each, size=extent) for each in record.vectors]
+    elif record.layout == "array":
         members = [language.record_array.format(type=kind, name=member, size=size)]
     else:
         vector = record.layout == "vec4"
@@ -63,6 +76,8 @@ def _declaration(language: Language, precision: str, record: Record, size: int) 
 
 
 def _require_layout(language: Language, precision: str, record: Record) -> None:
+    if record.vectors:
+        return
     allowed = ["array"]
     if language.record_opening is not None:
         allowed.append("struct")

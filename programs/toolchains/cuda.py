@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from programs.functions import Function, input_names
+from programs.languages.cuda import LANGUAGE as CUDA
+from programs.languages.spelling import Triple
 from programs.toolchains.calling import call_statements
 from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.native import (
@@ -49,13 +51,17 @@ def missing_reason(precision: str) -> str | None:
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
     """See `Toolchain.evaluate`."""
     compiler, real = _compiler(), _REAL[precision]
+    triple = CUDA.triple(precision)
     if compiler is None:
         shim = ("g++", "-std=c++17", *STRICT, "-include", _SHIM)
-        return evaluate_program("CUDA", shim, ".cpp", real, source, function, inputs, precision)
+        return evaluate_program(
+            "CUDA", shim, ".cpp", real, source, function, inputs, precision, triple
+        )
     failure = run_failure("CUDA", function, precision)
     with workspace() as folder:
         (folder / "code.cu").write_text(_with_half(source, precision), encoding="utf-8")
-        text = main_program(function, "code.cu", real) + kernel(function, real)
+        text = main_program(function, "code.cu", real, triple)
+        text += kernel(function, real, triple)
         (folder / "main.cu").write_text(text, encoding="utf-8")
         execute(
             [
@@ -70,7 +76,7 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
     return values_from(data, len(inputs), function, failure)
 
 
-def kernel(function: Function, real: str) -> str:
+def kernel(function: Function, real: str, triple: Triple | None = None) -> str:
     """Write a kernel that calls the function, so that its device code is compiled completely."""
     count, width = result_count(function), len(input_names(function))
     body = call_statements(
@@ -78,6 +84,7 @@ def kernel(function: Function, real: str) -> str:
         real,
         lambda cell: f"shadefit_in[{cell}]",
         lambda cell: f"shadefit_out[{cell}] = shadefit_value[{cell}];",
+        triple=triple,
     )
     return f"""
 __global__ void shadefit_kernel(const {real}* shadefit_in, {real}* shadefit_out) {{

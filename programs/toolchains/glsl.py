@@ -5,6 +5,9 @@ import re
 import numpy as np
 
 from programs.functions import Function
+from programs.languages.glsl import LANGUAGE as GLSL
+from programs.languages.glsl_es import LANGUAGE as GLSL_ES
+from programs.languages.spelling import Triple
 from programs.toolchains import device
 from programs.toolchains.interface import compile_failure
 from programs.toolchains.process import execute, first_line, missing_command, workspace
@@ -65,7 +68,7 @@ def compute_shader_es(source: str, function: Function) -> str:
 precision highp float;
 #line 1
 {text}
-{_main(function, "float", "float")}"""
+{_main(function, "float", "float", GLSL_ES.triple("float"))}"""
 
 
 def compute_shader(source: str, function: Function, precision: str) -> str:
@@ -76,11 +79,11 @@ def compute_shader(source: str, function: Function, precision: str) -> str:
     return f"""#version 450
 {extension}#line 1
 {text}
-{_main(function, real, stored)}"""
+{_main(function, real, stored, GLSL.triple(precision))}"""
 
 
-def _main(function: Function, real: str, stored: str) -> str:
-    body = main_body(function, real, stored, "shadefit_in.row", "shadefit_out.row")
+def _main(function: Function, real: str, stored: str, triple: Triple) -> str:
+    body = main_body(function, real, stored, "shadefit_in.row", "shadefit_out.row", triple)
     return f"""layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer ShadefitIn {{ {stored} row[]; }} shadefit_in;
 layout(std430, binding = 1) writeonly buffer ShadefitOut {{ {stored} row[]; }} shadefit_out;

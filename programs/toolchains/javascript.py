@@ -14,6 +14,7 @@ NOTE = "JavaScript computes in double only."
 _MAIN = """
 const shadefitNode = require("node:fs");
 const shadefitWidths = {widths};
+const shadefitNested = {nested};
 const shadefitCount = {count};
 const shadefitBytes = shadefitNode.readFileSync("inputs");
 const shadefitRows = new Float64Array(
@@ -24,13 +25,16 @@ const shadefitTotal = shadefitRows.length / shadefitWidth;
 const shadefitOut = new Float64Array(shadefitTotal * shadefitCount);
 for (let row = 0; row < shadefitTotal; ++row) {{
     let at = row * shadefitWidth;
-    const call = shadefitWidths.map((width) => {{
+    const call = shadefitWidths.map((width, place) => {{
         const from = at;
         at += width || 1;
-        return width ? Array.from(shadefitRows.subarray(from, at)) : shadefitRows[from];
+        if (!width) return shadefitRows[from];
+        const given = Array.from(shadefitRows.subarray(from, at));
+        if (!shadefitNested[place]) return given;
+        return given.filter((_, k) => k % 3 === 0).map((_, k) => given.slice(3 * k, 3 * k + 3));
     }});
     const value = {name}(...call);
-    const values = Array.isArray(value) ? value : [value];
+    const values = Array.isArray(value) ? value.flat() : [value];
     if (values.length !== shadefitCount || values.some((one) => typeof one !== "number"))
         throw new TypeError("{name} gave " + JSON.stringify(value));
     shadefitOut.set(values, row * shadefitCount);
@@ -49,7 +53,9 @@ def missing_reason(precision: str) -> str | None:
 def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str) -> np.ndarray:
     """See `Toolchain.evaluate`."""
     widths = json.dumps([parameter.size or 0 for parameter in function.parameters])
-    main = _MAIN.format(widths=widths, count=result_count(function), name=function.name)
+    nested = json.dumps([parameter.shape == "vectors" for parameter in function.parameters])
+    count = result_count(function)
+    main = _MAIN.format(widths=widths, nested=nested, count=count, name=function.name)
     failure = run_failure("JavaScript", function, precision)
     with workspace() as folder:
         (folder / "code.js").write_text(source, encoding="utf-8")

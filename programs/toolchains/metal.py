@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from programs.functions import Function
+from programs.languages.metal import LANGUAGE as METAL
 from programs.toolchains.interface import compile_failure
 from programs.toolchains.lexical import refuse, whole_words
 from programs.toolchains.native import HALF, STRICT, evaluate_program, half_missing
@@ -44,7 +45,15 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
         *("-isystem", _SHIMS / "metal", "-include", "metal_stdlib"),
     )
     return evaluate_program(
-        "Metal", compiler, ".cpp", precision, source, function, inputs, precision
+        "Metal",
+        compiler,
+        ".cpp",
+        precision,
+        source,
+        function,
+        inputs,
+        precision,
+        METAL.triple(precision),
     )
 
 

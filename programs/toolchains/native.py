@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from programs.functions import Function, input_names
+from programs.languages.spelling import Triple
 from programs.toolchains.calling import call_statements
 from programs.toolchains.interface import Toolchain, compile_failure, result_count, run_failure
 from programs.toolchains.process import (
@@ -36,14 +37,19 @@ int main(void) {
 """
 
 
-def main_program(function: Function, source_file: str, real: str) -> str:
+def main_program(
+    function: Function, source_file: str, real: str, triple: Triple | None = None
+) -> str:
     """Write the main program, in C and C++, that reads rows from stdin and writes values to stdout.
 
     Arguments: `function`; `source_file`, the file with its code, which is included so that the
-    compiler's messages have the line numbers of that file; `real`, the type of its numbers.
+    compiler's messages have the line numbers of that file; `real`, the type of its numbers;
+    `triple`, how vectors of three numbers are written, None for arrays.
     """
     count, width = result_count(function), len(input_names(function))
-    body = call_statements(function, real, lambda cell: f"({real})shadefit_row[{cell}]", depth=8)
+    body = call_statements(
+        function, real, lambda cell: f"({real})shadefit_row[{cell}]", depth=8, triple=triple
+    )
     return f"""#include "{source_file}"
 #include <stdio.h>
 int main(void) {{
@@ -68,16 +74,18 @@ def evaluate_program(
     function: Function,
     inputs: np.ndarray,
     precision: str,
+    triple: Triple | None = None,
 ) -> np.ndarray:
     """Compile a function with a main program around it, and run it on all rows.
 
     Arguments: `language`, its name for error messages; `compiler`, a program and its flags, to
     which files and `-o` are added; `suffix` of the source files; `real`, the type of the numbers;
-    the rest as in `Toolchain`. Returns (n, m) float64. Raises ToolchainError.
+    `triple` as in `main_program`; the rest as in `Toolchain`. Returns (n, m) float64. Raises
+    ToolchainError.
     """
     with workspace() as folder:
         (folder / f"code{suffix}").write_text(source, encoding="utf-8")
-        text = main_program(function, f"code{suffix}", real)
+        text = main_program(function, f"code{suffix}", real, triple)
         (folder / f"main{suffix}").write_text(text, encoding="utf-8")
         execute(
             [*compiler, f"main{suffix}", "-o", "program", "-lm"],

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from programs.functions import Function, input_names
+from programs.languages.osl import LANGUAGE as OSL
 from programs.toolchains.calling import call_statements
 from programs.toolchains.interface import compile_failure, result_count, run_failure
 from programs.toolchains.lexical import refuse, whole_words
@@ -32,6 +33,7 @@ NOTE = (
     "is checked only for its reserved words and literals."
 )
 
+_TRIPLE = OSL.triple("float")
 _SHIM = Path(__file__).with_name("shims") / "osl.h"
 _WORKER = Path(__file__).with_name("osl_worker.py")
 # Seconds. Blender takes long to start, and renders three values of a function at a time.
@@ -60,7 +62,9 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
     if renderer():
         return _rendered(source, function, inputs, failure)
     compiler = ("g++", "-std=c++17", *STRICT, "-fsingle-precision-constant", "-include", _SHIM)
-    return evaluate_program("OSL", compiler, ".cpp", "float", source, function, inputs, precision)
+    return evaluate_program(
+        "OSL", compiler, ".cpp", "float", source, function, inputs, precision, _TRIPLE
+    )
 
 
 def versions() -> str:
@@ -91,7 +95,9 @@ def probe(function: Function, first: int, folder: Path) -> str:
         'shadefit_s, shadefit_t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
         for index in range(-(-width // 3))
     )
-    body = call_statements(function, "float", lambda cell: f"shadefit_in{cell // 3}[{cell % 3}]")
+    body = call_statements(
+        function, "float", lambda cell: f"shadefit_in{cell // 3}[{cell % 3}]", triple=_TRIPLE
+    )
     shown = ", ".join(
         f"shadefit_value[{cell}]" if cell < count else "0.0" for cell in range(first, first + 3)
     )

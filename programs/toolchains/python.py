@@ -22,7 +22,11 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
     """See `Toolchain.evaluate`. Values whose type is not that of the precision are an error."""
     namespace: dict[str, Any] = {"__name__": "shadefit_exported"}
     kind = number_type(precision)
-    arguments = group_inputs(function, [column.astype(kind) for column in inputs.T])
+    grouped = group_inputs(function, [column.astype(kind) for column in inputs.T])
+    arguments = [
+        [each[k : k + 3] for k in range(0, len(each), 3)] if parameter.shape == "vectors" else each
+        for parameter, each in zip(function.parameters, grouped, strict=True)
+    ]
     try:
         exec(compile(source, f"<{function.name}>", "exec"), namespace)
     except Exception as error:
@@ -38,6 +42,8 @@ def evaluate(source: str, function: Function, inputs: np.ndarray, precision: str
         with np.errstate(all="ignore"):
             given = called(*arguments)
         columns = [given] if function.result is None else list(given)
+        if function.record is not None and function.record.vectors:
+            columns = [each for three in columns for each in three]
     except Exception as error:
         raise ToolchainError(failure, f"{type(error).__name__}: {error}") from error
     for column in columns:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from programs.functions import Function, input_names
+from programs.languages.wgsl import LANGUAGE as WGSL
 from programs.toolchains import device
 from programs.toolchains.calling import call_statements
 from programs.toolchains.interface import result_count
@@ -42,6 +43,7 @@ def compute_shader(source: str, function: Function, precision: str) -> str:
         scalar="var {name}: {real};",
         array="var {name}: array<{real}, {size}>;",
         given="&shadefit_value",
+        triple=WGSL.triple(precision),
     )
     # A directive must come first, and may be repeated. It is put on the first line of the source so
     # that line numbers do not change.

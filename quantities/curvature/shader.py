@@ -18,6 +18,7 @@ from programs.functions import Function, Parameter, function
 from quantities.calling_convention import CallingConvention, clamped
 from quantities.problem import ExactCode, Problem
 from shading.curvature import (
+    along_light,
     effective,
     equivalent_cylinder,
     packed,
@@ -266,6 +267,13 @@ CURVATURES: dict[str, Problem] = {
             "CurvatureFromLight",
             "Curvature along a light, not normalised, as the talk has it",
             "κ = l_tᵀ II l_t with l_t = (l·t, l·b)",
+        ),
+        _light_problem(
+            "along-light",
+            along_light,
+            "CurvatureAlongLight",
+            "Curvature of the surface along a light, normalised; the mean for a light along n",
+            "κ = l_tᵀ II l_t / |l_t|² with l_t = (l·t, l·b)",
         ),
         _light_problem(
             "effective",

@@ -5,7 +5,7 @@ import numpy as np
 
 import integrals
 from fitting.proofs.rounding_error import TracedArguments
-from integrals.fuzz.ps import FLOAT32_STEPS, FLOAT64_STEPS, fraction_at, scattered_fraction
+from integrals.fuzz.ps import fraction_at
 from integrals.reference import restricted
 from programs.functions import Function, Parameter, Record, function
 from quantities.calling_convention import MATERIAL, Argument, CallingConvention, clamped
@@ -17,6 +17,7 @@ from quantities.fuzz.ps_forms import MAX_DEGREE, candidates, cubic_ps, one_root_
 from quantities.fuzz.supplement import RATIONAL_PS
 from quantities.plot_hints import AxisHint, HemisphereHint, PlotHints
 from quantities.problem import ExactCode, Problem
+from shading.fuzz.lit_cone import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
 
 _COSINE = (0.0, 1.0)
 _CLOSED_FORM = (

@@ -13,10 +13,10 @@ from fitting.solvers.on_grid import MARQUARDT, OnGrid
 from fitting.solvers.quotients import fit_quotient_on_grid
 from fitting.solvers.separable import Separable
 from integrals import PS, G, Q, R
-from integrals.fuzz.ps import scattered_fraction
 from integrals.reference import restricted
 from quantities.fuzz.lights import cosines_of_light, light_directions
 from quantities.fuzz.ps_equations import rational_ps_equation, rational_r_equation
+from shading.fuzz.lit_cone import scattered_fraction
 from shading.types import Scalar
 
 # The elements of the vector x of Eq. (2) and (5), in the order of Listing 1.

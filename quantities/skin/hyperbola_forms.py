@@ -20,8 +20,10 @@ from fitting.shapes.monomials import Exponents
 from integrals.reference import Reference, restricted
 from shading.types import Scalar
 
-# The largest curvature of a form, that of r = 2 mm
+# The largest curvature of a form, that of r = 2 mm, and the largest width σ/r of a lobe
 MOST_CURVATURE = 0.5
+MOST_WIDTH = 1.5
+_MOST = {"curvature": MOST_CURVATURE, "width": MOST_WIDTH}
 _SYMBOLS = ("1", "c", "c²", "c⁴", "q", "p")
 # The number of p among them, which alone may have no factor κ
 _P = 5
@@ -40,11 +42,12 @@ def _terms(c, numerator: Exponents) -> dict:
 def hyperbola_form(
     reference: Reference, *, narrow: float, wide: float, numerator: Exponents, below: int
 ) -> Form:
-    """Return the form D = (c + q)/2 + N/B of a channel on a surface.
+    """Return the form D = (c + q)/2 + N/B of a channel, or of one Gaussian, on a surface.
 
-    `narrow` and `wide` are the widths of q and Q at κ = 1/mm, in mm. `numerator` has pairs (i, j)
-    for the terms fᵢ κʲ of N, where f is 1, c, c², c⁴, q, p. B = 1 + Σ of `below` powers of κ.
-    Raises ValueError for another function, or for a term that does not vanish at κ = 0.
+    `narrow` and `wide` are the widths of q and Q at κ = 1/mm, in mm; of one Gaussian, those at
+    s = σ/r = 1, and s stands for κ. `numerator` has pairs (i, j) for the terms fᵢ κʲ of N, where f
+    is 1, c, c², c⁴, q, p. B = 1 + Σ of `below` powers of κ. Raises ValueError for another function,
+    or for a term that does not vanish at κ = 0.
     """
     for i, j in numerator:
         if i > _P or (j == 0 and i != _P):
@@ -52,6 +55,8 @@ def hyperbola_form(
     if not narrow < wide:
         raise ValueError(f"narrow = {narrow:g}, wide = {wide:g}: allowed is narrow < wide")
     size = len(numerator)
+    across = reference.axes[1]
+    symbol = across.symbol
 
     def value(c, cosine: Scalar, curvature: Scalar) -> Array:
         x, k = jnp.asarray(cosine), jnp.asarray(curvature)
@@ -80,23 +85,23 @@ def hyperbola_form(
     bottom = [f"b{j + 1}" for j in range(below)]
     shown = {(i, j): name for (i, j), name in zip(numerator, names, strict=True)}
     above = " + ".join(
-        sum_text({(j,): _product(name, i)}, ("κ",)) for (i, j), name in shown.items()
+        sum_text({(j,): _product(name, i)}, (symbol,)) for (i, j), name in shown.items()
     )
-    shown_below = sum_text({(0,): 1.0, **{(j + 1,): b for j, b in enumerate(bottom)}}, ("κ",))
+    shown_below = sum_text({(0,): 1.0, **{(j + 1,): b for j, b in enumerate(bottom)}}, (symbol,))
     return Form(
-        name="hyperbola-skin",
+        name="lobe-skin" if across.name == "width" else "hyperbola-skin",
         equation=equation_of(
             "D",
             "(c + q)/2 + N/B" if below else "(c + q)/2 + N",
             [
-                f"q = √(c² + {narrow * narrow!r}·κ²)",
-                f"p = √(c² + {wide * wide!r}·κ²) − q",
+                f"q = √(c² + {narrow * narrow!r}·{symbol}²)",
+                f"p = √(c² + {wide * wide!r}·{symbol}²) − q",
                 f"N = {above}",
                 *([f"B = {shown_below}"] if below else []),
             ],
         ),
         reference=reference,
-        axes=restricted(reference.axes, curvature=(0.0, MOST_CURVATURE)),
+        axes=restricted(reference.axes, **{across.name: (0.0, _MOST[across.name])}),
         coefficient_names=[*names, *bottom],
         stages=(Stage(value),),
         shape={
@@ -117,21 +122,28 @@ def _powers(*counts: int) -> Exponents:
     return tuple((i, j + (i != _P)) for i, count in enumerate(counts) for j in range(count))
 
 
-# (narrow, wide, terms, below) of a channel: 20 coefficients each
+# (narrow, wide, terms, below) of a channel, and of a lobe: 20 coefficients each
 CHOSEN = {
     "red": (0.35, 0.9, _powers(4, 3, 3, 2, 3, 3), 2),
     "green": (0.15, 0.5, _powers(3, 3, 3, 2, 3, 4), 2),
     "blue": (0.1, 0.17, _powers(3, 3, 3, 2, 3, 4), 2),
 }
+CHOSEN_OF_LOBE = (0.9, 1.5, _powers(4, 3, 3, 2, 3, 3), 2)
+# What the wider width of a lobe may be; the narrower one is less than 1.
+WIDE = (1.0, 1.5, 2.0)
+
+
+def _chosen(reference: Reference) -> tuple[float, float, Exponents, int]:
+    return CHOSEN.get(reference.name.rpartition("-")[2], CHOSEN_OF_LOBE)
 
 
 def candidates(reference: Reference) -> Iterator[Form]:
-    """Yield the forms of a channel that a search tries."""
-    narrow, wide, numerator, below = CHOSEN[reference.name.rpartition("-")[2]]
+    """Yield the forms of a channel or of a lobe that a search tries."""
+    narrow, wide, numerator, below = _chosen(reference)
     yield hyperbola_form(reference, narrow=narrow, wide=wide, numerator=numerator, below=below)
 
 
 def without_denominator(reference: Reference) -> Form:
-    """Return the form of a channel with B = 1, whose least squares fit is a linear problem."""
-    narrow, wide, numerator, _ = CHOSEN[reference.name.rpartition("-")[2]]
+    """Return the form with B = 1, whose least squares fit is a linear problem."""
+    narrow, wide, numerator, _ = _chosen(reference)
     return hyperbola_form(reference, narrow=narrow, wide=wide, numerator=numerator, below=0)

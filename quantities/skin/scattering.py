@@ -13,6 +13,7 @@ from quantities.skin.hyperbola_forms import (
     without_denominator,
 )
 from quantities.skin.pesce import pesce_form
+from quantities.skin.yeung import yeung_form
 
 _LARGEST_ERROR = {"red": 0.004, "green": 0.0006, "blue": 0.0002}
 
@@ -25,7 +26,7 @@ def _problem(reference: Reference) -> Problem:
 
     return Problem(
         reference=reference,
-        forms=(without_denominator(reference), pesce_form(reference)),
+        forms=(without_denominator(reference), pesce_form(reference), yeung_form(reference)),
         families={
             "hyperbola-skin": Family(
                 made,

@@ -4,6 +4,12 @@ import numpy as np
 
 from shading import harmonics
 
+# The harmonics of ((1 + ω·s)/2)² = 1/3 + (ω·s)/2 + P₂(ω·s)/6 are these times those of its axis s,
+# by the addition theorem of spherical harmonics.
+LOBE = (
+    np.repeat([1 / 3, 1 / 2, 1 / 6], [1, 3, 5]) * 4 * np.pi / np.repeat([1.0, 3.0, 5.0], [1, 3, 5])
+)
+
 
 def lights() -> dict[str, np.ndarray]:
     """Return lights by name, as nine harmonics (9,) each.
@@ -19,14 +25,9 @@ def lights() -> dict[str, np.ndarray]:
     }
     uniform = np.zeros(9)
     uniform[0] = np.sqrt(4 * np.pi)
-    return {"uniform": uniform, **{name: _lobe(np.array(s)) for name, s in about.items()}}
+    return {"uniform": uniform, **{name: lobe(np.array(s)) for name, s in about.items()}}
 
 
-def _lobe(axis: np.ndarray) -> np.ndarray:
-    """Return the harmonics (9,) of ((1 + ω·s)/2)² = 1/3 + (ω·s)/2 + P₂(ω·s)/6.
-
-    They follow from the addition theorem of spherical harmonics.
-    """
-    legendre = np.repeat([1 / 3, 1 / 2, 1 / 6], [1, 3, 5])
-    bands = np.repeat([1.0, 3.0, 5.0], [1, 3, 5])
-    return legendre * 4 * np.pi / bands * np.asarray(harmonics(axis))
+def lobe(axis: np.ndarray) -> np.ndarray:
+    """Return the harmonics (9,) of the lobe ((1 + ω·s)/2)² about the unit vector s (3,)."""
+    return LOBE * np.asarray(harmonics(axis))

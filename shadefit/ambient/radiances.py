@@ -85,7 +85,7 @@ def radiances(at: np.ndarray, sets: tuple[Functions, ...] = ()) -> Radiances:
     every = lights()
     harmonic = np.stack(list(every.values()), axis=1)
     materials, which = np.unique(at[:, :3], axis=0, return_inverse=True)
-    layer = _layers(at) @ harmonic
+    layer = layer_responses(at) @ harmonic
     reaching = (_bases(materials) @ harmonic / np.pi)[which]
     exact = {"layer": layer, "base": _escaping(at)[:, None] * reaching}
     models = {each.name: _model(each, at, harmonic) for each in sets or (EXACT, *table_sets())}
@@ -97,7 +97,8 @@ def _layer_batches(at):
     return jax.lax.map(lambda x: layer_response(*x, **HEMISPHERE_RULE), at, batch_size=_BATCH)
 
 
-def _layers(at: np.ndarray) -> np.ndarray:
+def layer_responses(at: np.ndarray) -> np.ndarray:
+    """Return the exact weights (n, 9) of the nine harmonics of a light at points (n, 5)."""
     return np.asarray(_layer_batches(jnp.asarray(at)))
 
 

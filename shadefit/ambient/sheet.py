@@ -1,4 +1,4 @@
-"""The picture that `shadefit ambient` draws: the layer from all views, exact and by the model."""
+"""A picture that `shadefit ambient` draws: the layer from all views, exact and by two models."""
 
 from typing import Any
 
@@ -8,14 +8,16 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize, PowerNorm
 from matplotlib.figure import Figure
 
-from shadefit.ambient.radiances import Radiances, radiances
+from shadefit.ambient.lights import lights
+from shadefit.ambient.models import model_weights, views
+from shadefit.ambient.radiances import layer_responses
 from shadefit.figures.style import ERRORS, FIBRE, VALUES, render
 from shading import roughness_from_spread
 
 # The material; the tilt is in degrees.
 SPREAD, TILT, DENSITY = 0.2, 45.0, 0.2
 LIGHTS = ("uniform", "from above", "where fibres point", "from the side", "against fibres")
-MODELS = {"exact": "model, exact functions", "published": "model, published tables"}
+MODELS = {"talk": "talk's model", "recommended": "recommended model"}
 # The views: sines of the polar angle, from the normal to a cosine of 0.1, and azimuths over the
 # whole circle, because the radiance in light from the side has no mirror symmetry.
 _SINES = np.sin(np.linspace(0, np.arccos(0.1), 17))
@@ -24,7 +26,7 @@ _AZIMUTHS = np.arange(36) * np.pi / 18
 # computed at fewer azimuths and interpolated.
 _CHORDS = 180
 # Width and height of one disk on the sheet.
-_INCHES = 1.75
+_INCHES = 1.4
 
 
 def draw_ambient() -> bytes:
@@ -32,11 +34,13 @@ def draw_ambient() -> bytes:
     sine, azimuth = (a.ravel() for a in np.meshgrid(_SINES, _AZIMUTHS, indexing="ij"))
     material = float(roughness_from_spread(SPREAD)), np.radians(TILT), DENSITY
     at = np.column_stack([np.tile(material, (len(sine), 1)), np.arcsin(sine), azimuth])
-    found = radiances(at)
-    return render(lambda: _draw(found))["png"]
+    harmonic, view = np.stack([lights()[name] for name in LIGHTS], axis=1), views(at)
+    exact = layer_responses(at) @ harmonic
+    models = [model_weights(name, view, at) @ harmonic for name in MODELS]
+    return render(lambda: _draw(exact, models))["png"]
 
 
-def _draw(found: Radiances) -> Figure:
+def _draw(every_exact: np.ndarray, every_model: list[np.ndarray]) -> Figure:
     columns = ["exact", *MODELS.values(), *(f"error of the {name}" for name in MODELS.values())]
     figure = Figure(
         figsize=(_INCHES * len(columns) + 0.4, (_INCHES + 0.05) * len(LIGHTS) + 0.95),
@@ -44,10 +48,8 @@ def _draw(found: Radiances) -> Figure:
     )
     axes = figure.subplots(len(LIGHTS), len(columns))
     value = error = None
-    for row, light in zip(axes, LIGHTS, strict=True):
-        column = found.lights.index(light)
-        exact = found.exact["layer"][:, column]
-        models = [found.models[name]["layer"][:, column] for name in MODELS]
+    for column, (row, light) in enumerate(zip(axes, LIGHTS, strict=True)):
+        exact, models = every_exact[:, column], [each[:, column] for each in every_model]
         mean, peak = exact.mean(), max(exact.max(), *(m.max() for m in models))
         for axis, radiance in zip(row, (exact, *models), strict=False):
             value = _disk(axis, radiance / peak, VALUES, PowerNorm(0.5, 0, 1))
@@ -57,7 +59,7 @@ def _draw(found: Radiances) -> Figure:
     # The line from the centre shows the direction in which the fibres lean.
     axes[0, 0].plot([0, 0.5], [0, 0], color=FIBRE, marker="o", markevery=[1], markersize=3)
     for axis, title in zip(axes[0], columns, strict=True):
-        axis.set_title(title.replace("model, ", "model,\n"))
+        axis.set_title(title.replace("of the ", "of the\n"))
     assert value is not None
     assert error is not None
     bar: dict[str, Any] = {"location": "bottom", "aspect": 30, "shrink": 0.7}

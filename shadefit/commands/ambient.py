@@ -9,21 +9,24 @@ from shadefit.commands.options import Json
 
 
 def ambient(
-    out: Annotated[Path, typer.Option(help="Folder for ambient.png.")] = Path("build/figures"),
+    out: Annotated[Path, typer.Option(help="Folder for the two pictures.")] = Path("build/figures"),
     json: Json = False,
 ) -> None:
-    """Measure the errors of the ambient model, and its largest radiance in uniform light.
+    """Measure the errors of the ambient models, and their largest radiance in uniform light.
 
-    Exact radiances are integrals of the whole BRDF.
+    Exact radiances are integrals of the whole BRDF. The pictures are ambient.png, the layer over
+    all views, and ambient-cloth.png, a cloth in a strong light of nine harmonics.
     """
     run(out, json)
 
 
 def run(out: Path, json: bool) -> None:
-    """Measure the ambient model, write `ambient.png`, and print tables or one JSON object."""
+    """Measure the ambient models, write two pictures, and print tables or one JSON object."""
     from coefficients.files import require_writable, write_whole_bytes
+    from shadefit.ambient.cloth import draw_cloth
     from shadefit.ambient.energy import largest_radiances
     from shadefit.ambient.errors import errors_with_phase_integral, model_errors
+    from shadefit.ambient.models import model_rows
     from shadefit.ambient.radiances import materials_and_views, radiances
     from shadefit.ambient.sheet import draw_ambient
     from shadefit.outputs import AmbientOutput
@@ -31,22 +34,31 @@ def run(out: Path, json: bool) -> None:
     from shadefit.terminal import print_json
 
     require_writable(out)
-    path = out / "ambient.png"
+    paths = [out / "ambient.png", out / "ambient-cloth.png"]
     with stages() as progress:
-        stage = progress.begin("exact radiances by quadrature", total=2)
+        stage = progress.begin("exact radiances by quadrature", total=3)
         found = radiances(materials_and_views())
         stage.advance()
-        stage.show("picture")
-        write_whole_bytes(path, draw_ambient())
+        stage.show("models")
+        models = model_rows(found)
+        stage.advance()
+        stage.show("pictures")
+        for path, draw in zip(paths, (draw_ambient, draw_cloth), strict=True):
+            write_whole_bytes(path, draw())
     rows, with_integral = model_errors(found), errors_with_phase_integral(found)
     largest = largest_radiances(found)
     if json:
-        record = {"points": len(found.points), "errors": rows, "energy": largest}
-        others = {"rms_without_symmetry": with_integral, "files": [str(path)]}
+        record = {"points": len(found.points), "errors": rows, "models": models}
+        others = {
+            "energy": largest,
+            "rms_without_symmetry": with_integral,
+            "files": [str(path) for path in paths],
+        }
         print_json(AmbientOutput.model_validate({**record, **others}))
         return
     _print_errors(rows, with_integral, list(found.models), len(found.points))
-    _print_energy(largest, path)
+    _print_models(models)
+    _print_energy(largest, paths)
 
 
 def _print_errors(
@@ -78,13 +90,36 @@ def _print_errors(
     )
 
 
-def _print_energy(rows: list[dict], path: Path) -> None:
+def _print_models(rows: list[dict]) -> None:
+    from shadefit.terminal import print_table
+
+    print_table(
+        "rms error of models of the layer by light, relative to the mean, and operations of code",
+        ["model", "P_s", "G", *rows[0]["rms"], "worst", "brightest", "operations"],
+        [
+            [
+                *(row[key] for key in ("model", "scattered", "scattering")),
+                *(f"{value:.2%}" for value in row["rms"].values()),
+                f"{max(row['largest'].values()):.0%}",
+                f"{row['brightest']:.4f}",
+                str(sum(row["operations"].values())),
+            ]
+            for row in rows
+        ],
+        "White fibres. worst: the largest error in any light; brightest: the largest radiance in "
+        "uniform light of radiance one; operations: those of the exported function with closed "
+        "form and best/g-17, base included. Models from mean-cosine on have a P_s of their own.",
+        below=1,
+    )
+
+
+def _print_energy(rows: list[dict], paths: list[Path]) -> None:
     from shadefit.terminal import place, print_table
 
     print_table(
         "Largest radiance in uniform light of radiance one",
         ["in", "largest", "at"],
         [[row["what"], f"{row['largest']:.4f}", place(row["where"])] for row in rows],
-        f"Of the same points; {path}.",
+        f"Of the same points; {', '.join(map(str, paths))}.",
         below=1,
     )

@@ -202,7 +202,7 @@ def _area(shape) -> float:
 
 
 def _print(record: "CurvatureOutput") -> None:
-    from shadefit.terminal import print_table
+    from shadefit.terminal import print_lines, print_table
 
     names = ["least", "5 %", "median", "95 %", "largest"]
     print_table(
@@ -222,4 +222,4 @@ def _print(record: "CurvatureOutput") -> None:
         if count:
             print(f"{count} {text}")
     for each in record.files:
-        print(each)
+        print_lines(each)

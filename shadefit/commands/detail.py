@@ -148,7 +148,7 @@ def compose(
 
 
 def _show(output: "DetailOutput", json: bool) -> None:
-    from shadefit.terminal import print_json
+    from shadefit.terminal import print_json, print_lines
 
     if json:
         print_json(output)
@@ -160,4 +160,4 @@ def _show(output: "DetailOutput", json: bool) -> None:
             f"largest {output.largest:.0f}"
         )
     for each in output.files:
-        print(each)
+        print_lines(each)

@@ -155,9 +155,10 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
     import numpy as np
 
     from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
+    from shadefit.encoding import visible
     from shadefit.many_points import estimates, values
     from shadefit.outputs import PointsOutput
-    from shadefit.terminal import print_json
+    from shadefit.terminal import print_json, print_lines
 
     owner = _owner(name)
     if out == OUTPUT:
@@ -190,9 +191,9 @@ def run_points(name: str, file: Path, extra: list[str], out: Path | None, json: 
             )
         )
     elif out is None:
-        print(csv_text(columns), end="")
+        print(visible(csv_text(columns)), end="")
     else:
-        print(out)
+        print_lines(out)
 
 
 def _owner(name: str) -> "Problem":

@@ -18,6 +18,7 @@ def figures(
     from coefficients.files import require_writable, write_whole_bytes
     from shadefit.figures import drawable, pictures, render, require_libraries
     from shadefit.progress import stages
+    from shadefit.terminal import print_lines
 
     known = pictures()
     for name in names or []:
@@ -39,4 +40,4 @@ def figures(
                 write_whole_bytes(path, data)
                 files.append(path)
             stage.advance()
-    print(*files, sep="\n")
+    print_lines(*files)

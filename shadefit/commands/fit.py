@@ -93,6 +93,7 @@ def fit(
     from coefficients.table import serialise
     from integrals.data import table
     from shadefit.commands.shared_fits import shared_fits
+    from shadefit.encoding import visible
     from shadefit.outputs import FitOutput
     from shadefit.terminal import print_json
 
@@ -127,7 +128,7 @@ def fit(
             _add(owners[0], each)
         results, refused = _fits(owners[0], goal, shlex.join(command), form)
     for reason in refused:
-        print(f"refused: {reason}", file=sys.stderr)
+        print(visible(f"refused: {reason}"), file=sys.stderr)
     opinions = [each.second_opinion() if second_opinion else None for each in results]
     several = len(form) > 1
     files = [
@@ -155,12 +156,14 @@ def fit(
 def _print(
     results: "list[Result]", files: "list[Path | None]", opinions: "list[Opinion | None]"
 ) -> None:
+    from shadefit.terminal import print_lines
+
     for each, file, opinion in zip(results, files, opinions, strict=True):
-        print(each)
+        print_lines(each)
         if opinion is not None:
             print(opinion_text(opinion))
         if file is not None:
-            print(file)
+            print_lines(file)
 
 
 def _fits(

@@ -14,6 +14,10 @@ _COUNTS: dict[str, tuple[int, int] | None] = {
 }
 
 
+# A table has no more coefficients than these.
+_LARGEST = 4096
+
+
 def parsed_form(text: str, axes: int) -> tuple[str, list[int]]:
     """Return the shape and the numbers of a text; `axes` is how many variables the form has.
 
@@ -30,6 +34,8 @@ def parsed_form(text: str, axes: int) -> tuple[str, list[int]]:
     if not least <= len(counts) <= most or min(counts) < 0:
         allowed = str(least) if least == most else f"{least} to {most}"
         raise ValueError(f"--form {text}: allowed are {allowed} numbers after {kind}:")
+    if max(counts) > _LARGEST:
+        raise ValueError(f"--form {text}: allowed are numbers up to {_LARGEST}")
     return kind, counts
 
 

@@ -208,7 +208,7 @@ def _print_costs(costs: "list[NdfCost]") -> None:
 
 def _print(table: "NdfTable | NdfBlendTable", verified: "list[NdfCheck]", files: list[str]) -> None:
     from coefficients.ndf_table import NdfTable
-    from shadefit.terminal import print_table
+    from shadefit.terminal import print_lines, print_table
 
     profiles = [table] if isinstance(table, NdfTable) else [table.x, table.y]
     errors = table.errors
@@ -229,9 +229,9 @@ def _print(table: "NdfTable | NdfBlendTable", verified: "list[NdfCheck]", files:
     )
     for each in verified:
         why = f": {each.reason}" if each.reason else ""
-        print(f"{each.function} in {each.language}: {each.status}{why}")
+        print_lines(f"{each.function} in {each.language}: {each.status}{why}")
     for each in files:
-        print(each)
+        print_lines(each)
 
 
 def _table(

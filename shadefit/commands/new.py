@@ -68,6 +68,7 @@ def new(
 ) -> None:
     """Write NAME.py, a commented problem file that works as it is."""
     from coefficients.files import require_writable, write_whole
+    from shadefit.terminal import print_lines
 
     if not re.fullmatch(r"[a-z][a-z0-9_-]{0,39}", name):
         raise ValueError(f"{name!r} is no name: allowed are up to 40 of a-z, 0-9, - and _")
@@ -77,7 +78,7 @@ def new(
     text = problem_file(name, axes or _DEFAULT, path.name)
     require_writable(out)
     write_whole(path, text)
-    print(path)
+    print_lines(path)
 
 
 def problem_file(name: str, axes: list[str], file: str) -> str:

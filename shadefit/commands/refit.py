@@ -109,6 +109,7 @@ def run(
 
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
+    from shadefit.encoding import visible
     from shadefit.outputs import RefitOutput
     from shadefit.progress import stages
     from shadefit.terminal import print_json, print_table
@@ -158,7 +159,7 @@ def run(
     if not tables:
         raise ValueError("; ".join(refused))
     for reason in refused:
-        print(f"refused: {reason}", file=sys.stderr)
+        print(visible(f"refused: {reason}"), file=sys.stderr)
     folders = [f for f, each in zip(folders, made, strict=True) if not isinstance(each, str)]
     files = [folder / f"{table.name}.json" for folder, table in zip(folders, tables, strict=True)]
     for table, file in zip(tables, files, strict=True):

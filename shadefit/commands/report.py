@@ -29,7 +29,7 @@ def report(
     from shadefit.figures import drawable, pictures, render
     from shadefit.progress import stages
     from shadefit.report.page import page
-    from shadefit.terminal import apart_from
+    from shadefit.terminal import apart_from, print_lines
 
     require_writable_file(out)
     more = _more(tables or [])
@@ -45,7 +45,7 @@ def report(
         stage.show("tables")
         write_whole(out, page(drawn, more))
     with apart_from(out):
-        print(out)
+        print_lines(out)
 
 
 def _more(names: list[str]) -> "list[Entry]":

@@ -170,7 +170,7 @@ def _record(quantity: str, each: "Found") -> "FoundTable":
 
 
 def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, drawn: Path) -> None:
-    from shadefit.terminal import print_table
+    from shadefit.terminal import print_lines, print_table
 
     first = [] if result.published is None else [result.published]
     print_table(
@@ -180,7 +180,7 @@ def _print(quantity: str, result: "Result", good: "list[Found]", limit: str, dra
         f"Operations a call, of P_s a direction. {result.refused} forms refused: they have poles, "
         "or are not shown to have none.",
     )
-    print(f"plot {drawn}.png")
+    print_lines(f"plot {drawn}.png")
 
 
 def _row(each: "Found", published: "Found | None") -> list[str]:

@@ -20,7 +20,7 @@ from integrals.reference import restricted
 from quantities import problem
 from shadefit.curvature.blocks import over_rows
 from shadefit.curvature.meshes import Mesh
-from shadefit.curvature.smoothing import normal_drift, smoothed
+from shadefit.curvature.smoothing import smoothed_with_drift
 from shadefit.curvature.tensors import Curvature, frame_tensors, frames_of, space_tensors
 from shading.curvature import along_light, drifted, effective, equivalent_cylinder, projected_light
 from shading.skin.profiles import SKIN
@@ -65,8 +65,7 @@ def skin_of(mesh: Mesh, raw: Curvature, chosen: Curvature, width: float) -> Skin
     `width` is the σ in mm by which the raw curvature and the normals are blurred for the equivalent
     cylinder.
     """
-    soft = smoothed(mesh, raw, [width])
-    drift = normal_drift(mesh, raw, width)
+    soft, drift = smoothed_with_drift(mesh, raw, width)
     return Skin(
         mesh.normals,
         space_tensors(chosen.tensors, chosen.frames),

@@ -60,9 +60,7 @@ def smoothed(
     distinct = _distinct(mesh)
     total = np.zeros_like(found.tensors)
     for width in widths:
-        sums = _sums(mesh, found, distinct, width, cell)
-        known = (sums.mass > 0)[distinct.number]
-        total += np.where(known[:, None], sums.tensors[distinct.number], found.tensors)
+        total += _tensors(found, distinct, _sums(mesh, found, distinct, width, cell))
     return replace(found, tensors=total / len(widths))
 
 
@@ -78,7 +76,27 @@ def normal_drift(
     trace; `shading.curvature.drifted` takes it.
     """
     distinct = _distinct(mesh)
+    return _drift(mesh, found, distinct, _sums(mesh, found, distinct, width, cell), width)
+
+
+def smoothed_with_drift(
+    mesh: Mesh, found: Curvature, width: float = DRIFT_WIDTH, cell: float = CELL
+) -> tuple[Curvature, Float[np.ndarray, "n 2"]]:
+    """Return `smoothed` of one width and `normal_drift` in the time of one of them."""
+    distinct = _distinct(mesh)
     sums = _sums(mesh, found, distinct, width, cell)
+    drift = _drift(mesh, found, distinct, sums, width)
+    return replace(found, tensors=_tensors(found, distinct, sums)), drift
+
+
+def _tensors(found: Curvature, distinct: _Distinct, sums: Sums) -> np.ndarray:
+    known = (sums.mass > 0)[distinct.number]
+    return np.where(known[:, None], sums.tensors[distinct.number], found.tensors)
+
+
+def _drift(
+    mesh: Mesh, found: Curvature, distinct: _Distinct, sums: Sums, width: float
+) -> np.ndarray:
     apart = sums.places[distinct.number] - mesh.vertices
     leaning = np.einsum("nai,ni->na", found.frames, sums.normals[distinct.number])
     x, y = np.einsum("nai,ni->an", found.frames, apart)

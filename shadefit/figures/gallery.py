@@ -3,7 +3,7 @@
 from functools import partial
 
 from quantities import Problem, problems
-from quantities.skin import SKIN_QUANTITIES
+from quantities.skin import BAND_QUANTITIES, LOBE_QUANTITIES, SKIN_QUANTITIES
 from shadefit.figures.curves import draw_curves
 from shadefit.figures.detail_maps import detail_pictures
 from shadefit.figures.encodings import encoding_pictures
@@ -17,6 +17,7 @@ from shadefit.figures.ndf import ndf_pictures
 from shadefit.figures.picture import Picture
 from shadefit.figures.result import draw_data
 from shadefit.figures.skin_surfaces import skin_pictures
+from shadefit.figures.skin_tables import skin_table_pictures
 
 _DRAW = {1: draw_curves, 2: draw_errors}
 
@@ -44,7 +45,7 @@ def pictures() -> dict[str, Picture]:
     A quantity whose pictures are not declared gets errors-NAME if it has one or two axes. The
     quantities of skin look alike: only the first gets one.
     """
-    shown = (*DRAWN, *SKIN_QUANTITIES[1:])
+    shown = (*DRAWN, *SKIN_QUANTITIES[1:], *LOBE_QUANTITIES, *BAND_QUANTITIES)
     others = {
         f"errors-{owner.name}": errors_picture(owner)
         for owner in problems().values()
@@ -59,6 +60,7 @@ def pictures() -> dict[str, Picture]:
         **detail_pictures(),
         **maps_pictures(),
         **skin_pictures(),
+        **skin_table_pictures(),
     }
     return {**topics, **others, "frontier": _FRONTIER, "ggx-frontier": _GGX_FRONTIER}
 

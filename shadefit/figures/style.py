@@ -61,8 +61,14 @@ MARKERS = {"exact": "*", "published": "s", "printed": "X", "refitted": "o", "bes
 
 
 def render(draw: Callable[[], Figure]) -> dict[str, bytes]:
-    """Draw a figure in this style. Returns its files by extension, the same bytes each time."""
-    with mpl.rc_context(_STYLE):
+    """Draw a figure in this style. Returns its files by extension, the same bytes each time.
+
+    The user's settings of Matplotlib, such as a file `matplotlibrc` in the current folder, do not
+    count.
+    """
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(_STYLE)
         figure = draw()
         return {extension: _encode(figure, extension) for extension in FORMATS}
 

@@ -12,9 +12,9 @@ from jax import Array
 
 import integrals
 from coefficients.catalogue import Entry, entries, published, refitted
-from integrals.fuzz.ps import scattered_fraction
 from quantities import Problem
 from quantities.fuzz import PS, G, Q, R
+from shading.fuzz.lit_cone import scattered_fraction
 
 
 # Compared and hashed by identity (eq=False): JAX takes it as a static argument.

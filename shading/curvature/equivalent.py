@@ -25,8 +25,9 @@ from shading.curvature.from_light import Projected
 from shading.types import Scalar
 
 Drift = Float[ArrayLike, "2"]
-# Tensors below this curvature in 1/mm are flat: their radius is more than a kilometre.
-_LEAST = 1e-6
+# Tensors below this curvature in 1/mm are flat: their radius is more than 50 metres. In half
+# precision its reciprocal is finite.
+_LEAST = 2e-5
 
 
 class EquivalentCylinder(NamedTuple):
@@ -53,8 +54,8 @@ def equivalent_cylinder(tensor: Tensor, light: Projected, cosine: Scalar) -> Equ
         jnp.maximum(jnp.abs(entries[0]), jnp.abs(entries[1])), jnp.abs(entries[2])
     )
     flat = largest <= _LEAST
-    safe = jnp.where(flat, 1.0, largest)
-    xx, xy, yy = (jnp.where(flat, one, entries[k] / safe) for k, one in enumerate((1.0, 0.0, 1.0)))
+    unit = 1 / jnp.where(flat, 1.0, largest)
+    xx, xy, yy = (jnp.where(flat, one, entries[k] * unit) for k, one in enumerate((1.0, 0.0, 1.0)))
     norm2 = xx * xx + 2 * xy * xy + yy * yy
     along, across = xx * x + xy * y, xy * x + yy * y
     scale2 = c * c + (along * along + across * across) / norm2

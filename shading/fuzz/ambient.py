@@ -36,7 +36,7 @@ def lit_fraction(scattered: Scalar, cos_vt: Scalar, alpha: Scalar) -> Array:
     σ² = 1 − κ(v·t)², and ā² for the mean of (u·t)². It is 1 − P_s at α = 1 and as α → 0, as the
     exact one is (docs/ambient-light.md). Both constants were fitted to exact values.
     """
-    return _lit(_LIT_FRACTION, 1 - jnp.asarray(scattered), cos_vt, alpha)
+    return lit_by_constants(LIT_FRACTION_CONSTANTS, 1 - jnp.asarray(scattered), cos_vt, alpha)
 
 
 def ambient_layer_lit(
@@ -57,26 +57,43 @@ def ambient_layer_lit(
     correlation of the phase function with the kernel of G: the light that is scattered to v does
     not come at the mean cosine of the hemisphere. docs/ambient-light.md states the error.
     """
+    total = corrected_layer(scattering, scattered, cos_vt, cos_nt, alpha, LIT_LAYER_CONSTANTS)
+    return jnp.asarray(albedo) * total * mean
+
+
+# The constants k₀ and k₁ in ā² = (v·t)² (1 − k₀α) + k₁ α (1 − P_s). The first are fitted to E_lit,
+# the second, together with the level and slope of the correlation, to the radiance of the layer in
+# uniform light. 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
+LIT_FRACTION_CONSTANTS = (1.3, 0.834)
+LIT_LAYER_CONSTANTS = (1.3153, 0.9782, 0.8458, 0.3296)
+
+
+def corrected_layer(
+    scattering: Scalar,
+    scattered: Scalar,
+    cos_vt: Scalar,
+    cos_nt: Scalar,
+    alpha: Scalar,
+    constants: tuple[float, ...],
+) -> Array:
+    """Return the layer's radiance in light of radiance one, over the albedo.
+
+    `constants` are k₀ and k₁ of E_lit, and k₂ and k₃ of the correlation k₂ + k₃ (1 − P_s) σ σ_n.
+    The other arguments are those of `ambient_layer_lit`.
+    """
     # notation: up = 1 − P_s, areas = σ(v) σ(n).
     alpha = jnp.asarray(alpha)
     up, kappa = 1 - jnp.asarray(scattered), (1 - alpha) * (1 + alpha)
     view2, normal2 = (1 - kappa * jnp.asarray(each) ** 2 for each in (cos_vt, cos_nt))
     areas = jnp.sqrt(view2 * normal2)
-    level, slope = _CORRELATION
-    corrected = scattering * (level + slope * up * areas)
-    return jnp.asarray(albedo) * _lit(_LIT_LAYER, up, cos_vt, alpha) * corrected * mean
+    lit = lit_by_constants(constants[:2], up, cos_vt, alpha)
+    return lit * (scattering * (constants[2] + constants[3] * up * areas))
 
 
-# The constants k₀ and k₁ in ā² = (v·t)² (1 − k₀α) + k₁ α (1 − P_s). The first are fitted to E_lit,
-# the second, together with the correlation, to the radiance of the layer in uniform light
-# (tests/shading/test_ambient_lit.py). 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
-_LIT_FRACTION = (1.3, 0.834)
-_LIT_LAYER = (1.3153, 0.9782)
-_CORRELATION = (0.8458, 0.3296)
-
-
-def _lit(constants: tuple[float, float], up: Array, cos_vt: Scalar, alpha: Scalar) -> Array:
-    """Return up √(σ²/(1 − κā²)), where `up` is 1 − P_s."""
+def lit_by_constants(
+    constants: tuple[float, ...], up: Array, cos_vt: Scalar, alpha: Scalar
+) -> Array:
+    """Return `lit_fraction` with other constants (k₀, k₁). `up` is 1 − P_s."""
     alpha = jnp.asarray(alpha)
     square, kappa = jnp.asarray(cos_vt) ** 2, (1 - alpha) * (1 + alpha)
     mean_square = square * (1 - constants[0] * alpha) + constants[1] * alpha * up

@@ -22,10 +22,24 @@ from quantities import problem, problems
 
 QUANTITIES = ("ps", "g", "q", "r", "velvet")
 _GGX = ("ggx-directional-albedo", "ggx-scale", "ggx-bias")
-_SKIN = tuple(f"skin-cylinder-{channel}" for channel in ("red", "green", "blue"))
-PUBLISHED = ("ps", "g", "q", "r", *_GGX, "sggx-filter", "sggx-filter-axes", *_SKIN)
+_SORTED = ("blue", "green", "red")
+_SKIN = tuple(f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("red", "green", "blue"))
+PUBLISHED = (
+    "ps",
+    "g",
+    "q",
+    "r",
+    *_GGX,
+    "sggx-filter",
+    "sggx-filter-axes",
+    *_SKIN,
+    "skin-lobe-sphere",
+)
 # Constants of two sources are in print for these.
-SECOND = ("sggx-filter-lean", "sggx-filter-axes-lean")
+SECOND = (
+    *("sggx-filter-lean", "sggx-filter-axes-lean"),
+    *(f"skin-cylinder-{channel}-yeung" for channel in _SORTED),
+)
 CLOSED_FORMS = ("exact/ps", "exact/g", "exact/q", "exact/velvet")
 
 
@@ -42,7 +56,9 @@ def test_every_listed_name_resolves():
         "g",
         *("ggx-average-albedo", "ggx-bias", "ggx-directional-albedo", "ggx-scale"),
         *("ps", "q", "r", "sggx-filter-axes", "sggx-filter"),
-        *(f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("blue", "green", "red")),
+        *(f"skin-{s}-{c}" for s in ("band-1", "band-2", "cylinder") for c in _SORTED),
+        *("skin-lobe-cylinder", "skin-lobe-sphere"),
+        *(f"skin-sphere-{c}" for c in _SORTED),
         "velvet",
         *names_of_best(),
         *(f"published/{each}" for each in sorted((*PUBLISHED, *SECOND), key=lambda x: f"{x}.json")),

@@ -117,6 +117,9 @@ def test_links_that_lead_nowhere_are_refused(tmp_path):
             write_whole(tmp_path / name, "new")
     with pytest.raises(ValueError, match="symbolic links"):
         require_writable_file(tmp_path / "loop")
+    for folder in (tmp_path / "loop", tmp_path / "loop" / "deeper", tmp_path / "lost"):
+        with pytest.raises(ValueError, match=r"is no folder|cannot be written"):
+            require_writable(folder)
     assert sorted(os.listdir(tmp_path)) == ["loop", "lost"]
 
 

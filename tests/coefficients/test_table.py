@@ -65,8 +65,12 @@ def test_published_refitted_and_best_tables_are_shipped():
     maps = [f"{folder}/sggx-filter{axes}" for folder in ends for axes in ("", "-axes")]
     maps += [f"published/sggx-filter{axes}-lean" for axes in ("", "-axes")]
     channels = ("red", "green", "blue")
-    skin = [f"{folder}/skin-cylinder-{channel}" for folder in ends for channel in channels]
-    skin += [f"refit/skin-sphere-{channel}" for channel in channels]
+    surfaces = [(folder, s) for folder in ends for s in ("cylinder", "sphere")]
+    skin = [f"{folder}/skin-{s}-{c}" for folder, s in surfaces for c in channels]
+    skin += [f"published/skin-cylinder-{c}-yeung" for c in channels]
+    skin += ["published/skin-lobe-sphere"]
+    skin += [f"refit/skin-{s}-{c}" for s in ("band-1", "band-2") for c in channels]
+    skin += [f"refit/skin-lobe-{surface}" for surface in ("cylinder", "sphere")]
     assert sorted(names) == sorted([*names_of_best(), *others, *ggx, *more, *maps, *skin])
 
 

@@ -20,6 +20,10 @@ ETA, X, Y = 1.7, 0.3, -0.7
 def test_powers_are_exponents_up_to_a_degree_in_each_variable_or_in_total():
     assert powers(2) == (0, 1, 2)
     assert powers(2, 2, total=True) == ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (2, 0))
+    for degree, variables in ((4096, 1), (10**400, 1), (100, 2), (10**400, 3), (7, 5)):
+        with pytest.raises(ValueError, match="allowed are at most 4096 monomials"):
+            powers(degree, variables)
+    assert len(powers(4095)) == 4096
     assert powers(1, 2) == ((0, 0), (0, 1), (1, 0), (1, 1))
     assert len(powers(2, 3)) == 27
     assert len(powers(2, 3, total=True)) == 10

@@ -204,7 +204,7 @@ def test_a_grid_of_several_blocks_gives_what_its_nodes_give_alone(monkeypatch):
     results = np.random.default_rng(3).normal(size=whole.optimum.shape)
     nodes = solver(COUNT)._nodes(RATIONAL_PS, GRID, "uniform")
     errors = nodes.errors(results)
-    monkeypatch.setattr(node_fits, "BLOCK", 5)
+    monkeypatch.setattr(node_fits, "BLOCK", (5, 4))
     blocks, other = nodes.best(), nodes.errors(results)
     np.testing.assert_allclose(blocks.optimum, whole.optimum, rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(blocks.factors, whole.factors, rtol=1e-12, atol=1e-13)

@@ -108,6 +108,16 @@ def _table() -> list[KnownValue]:
         for channel in ("red", "green", "blue")
         for cosine in (-0.5, 0.25, 1.0)
     ]
+    values += [
+        KnownValue(f"skin-lobe-{surface}", (cosine, 0.0), max(cosine, 0.0), "a plane")
+        for surface in ("cylinder", "sphere")
+        for cosine in (-0.5, 0.25, 1.0)
+    ]
+    values += [
+        KnownValue(f"skin-band-{band}-{channel}", (0.0,), 1.0, "a plane")
+        for band in (1, 2)
+        for channel in ("red", "green", "blue")
+    ]
     return values
 
 

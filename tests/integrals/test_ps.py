@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import cubature
 
 from integrals import PS
-from integrals.fuzz.ps import (
+from shading.fuzz.lit_cone import (
     FLOAT32_STEPS,
     FLOAT64_STEPS,
     quick_fraction_at,

@@ -18,6 +18,8 @@ KNOWN_ROUNDING = 1e-15
 
 LEGS = [(name, leg) for name, reference in REFERENCES.items() for leg in reference.legs]
 SKIN = [f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("red", "green", "blue")]
+LOBES = ["skin-lobe-cylinder", "skin-lobe-sphere"]
+BANDS = [f"skin-band-{b}-{c}" for b in (1, 2) for c in ("red", "green", "blue")]
 INSIDE = {
     "ps": (0.5, 0.6, 0.7, 0.8),
     "g": (0.5, 0.6),
@@ -31,6 +33,8 @@ INSIDE = {
     "sggx-filter": (0.5,),
     "sggx-filter-axes": (0.5, 0.25),
     **dict.fromkeys(SKIN, (0.5, 0.2)),
+    **dict.fromkeys(LOBES, (0.5, 0.2)),
+    **dict.fromkeys(BANDS, (0.2,)),
 }
 
 
@@ -152,7 +156,8 @@ def test_best_leg_is_the_most_exact_one():
         "ggx-average-albedo": "quadrature",
         "sggx-filter": "quadrature",
         "sggx-filter-axes": "quadrature",
-        **dict.fromkeys(SKIN, "quadrature"),
+        **dict.fromkeys([*SKIN, *LOBES], "quadrature"),
+        **dict.fromkeys(BANDS, "closed_form"),
     }
     assert REFERENCES["q"].value(0.5) == REFERENCES["q"].closed_form(0.5).value
 

@@ -39,7 +39,7 @@ def nothing_else_stays():
     """Each test ends what it started; workers of other tests may go on."""
     before = set(running._RUNNING)
     yield
-    assert running._RUNNING == before
+    assert before == running._RUNNING
 
 
 def test_status_and_output_are_returned_and_input_is_read(tmp_path):

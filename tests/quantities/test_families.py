@@ -31,11 +31,14 @@ SHAPES = {
     "quotient-sggx-filter": {"above": 1, "below": 1},
     "quotient-sggx-filter-axes": {"numerator": [[1, 0]], "denominator": [[0, 1]]},
     "hyperbola-skin": SKIN,
+    "lobe-skin": {**SKIN, "wide": 1.5},
+    "quotient-skin": {"above": 1, "below": 1},
 }
 # Arguments that the function of a family limits more than their kind does.
 LIMITED = {
     "quotient-sggx-filter-axes": {"numerator": [[[1, 0]], [[7, 7]]]},
     "hyperbola-skin": {"narrow": [0.05], "wide": [0.5], "numerator": [[[5, 0]], [[5, 7]]]},
+    "lobe-skin": {"numerator": [[[5, 0]], [[5, 7]]]},
 }
 FAMILIES = {name: owner for owner in problems().values() for name in owner.families}
 
@@ -133,5 +136,5 @@ def test_every_allowed_shape_gives_a_form(family):
 def test_families_are_named_after_their_quantity():
     assert set(FAMILIES) == set(SHAPES)
     for name, owner in FAMILIES.items():
-        # The quantities of skin share one family, which has the name of their topic.
+        # The quantities of skin share families, which have the name of their topic.
         assert name.endswith((f"-{owner.name}", f"-{owner.topic}"))

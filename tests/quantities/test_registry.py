@@ -53,7 +53,10 @@ def one_line(caught) -> str:
 
 GGX = ["ggx-directional-albedo", "ggx-scale", "ggx-bias", "ggx-average-albedo"]
 MAPS = ["sggx-filter", "sggx-filter-axes"]
-SKIN = [f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in ("red", "green", "blue")]
+CHANNELS = ("red", "green", "blue")
+SKIN = [f"skin-{s}-{c}" for s in ("cylinder", "sphere") for c in CHANNELS]
+SKIN += ["skin-lobe-cylinder", "skin-lobe-sphere"]
+SKIN += [f"skin-band-{band}-{c}" for band in (1, 2) for c in CHANNELS]
 
 
 def test_the_quantities_are_known_in_their_order():

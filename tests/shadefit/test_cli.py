@@ -3,7 +3,6 @@
 import inspect
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
@@ -46,6 +45,13 @@ POINTS = {
     **{
         f"skin-{surface}-{channel}": ["--cosine", "0.2", "--curvature", "0.1"]
         for surface in ("cylinder", "sphere")
+        for channel in ("red", "green", "blue")
+    },
+    "skin-lobe-cylinder": ["--cosine", "0.2", "--width", "0.3"],
+    "skin-lobe-sphere": ["--cosine", "0.2", "--width", "0.3"],
+    **{
+        f"skin-band-{band}-{channel}": ["--curvature", "0.1"]
+        for band in (1, 2)
         for channel in ("red", "green", "blue")
     },
 }
@@ -104,19 +110,6 @@ def test_evaluate_gives_every_leg_within_its_error(capsys, name):
         assert abs(table["difference"]) < (0.42 if name.startswith("sggx") else 0.15)
     best = [each.name for each in entries(problems()[name]) if each.kind == "best"]
     assert [table["label"] for table in result["tables"] if table["kind"] == "best"] == best
-
-
-def test_float64_is_set_whatever_the_environment_says():
-    code = (
-        "import os, sys; from shadefit.cli import main\n"
-        "try: main(['--version'])\n"
-        "finally: import jax; sys.stderr.write(str(jax.config.read('jax_enable_x64')))"
-    )
-    environment = {**os.environ, "JAX_ENABLE_X64": "0"}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True
-    )
-    assert done.stderr == "True"
 
 
 def test_evaluate_outside_a_fits_domain_gives_no_number_for_it(capsys):
@@ -198,6 +191,26 @@ def test_a_checkout_is_known_by_its_project_file(monkeypatch, tmp_path):
     assert packaged.in_checkout()
     monkeypatch.setattr(packaged, "FOLDER", tmp_path / "site-packages" / "coefficients" / "tables")
     assert not packaged.in_checkout()
+
+
+@pytest.mark.parametrize(
+    ("root", "project", "ours"),
+    [
+        ("checkout", '[project]\nname = "shadefit"\n', True),
+        # Other packages have such files too, and install them by mistake.
+        ("vendored", '[project]\nname = "other"\n', False),
+        ("vendored", "[tool.black]\n", False),
+        ("vendored", "project = 1\n", False),
+        ("vendored", "no project file", False),
+        ("site-packages", '[project]\nname = "shadefit"\n', False),
+        ("dist-packages", '[project]\nname = "shadefit"\n', False),
+    ],
+)
+def test_only_the_project_file_of_a_checkout_counts(monkeypatch, tmp_path, root, project, ours):
+    monkeypatch.setattr(packaged, "FOLDER", tmp_path / root / "coefficients" / "tables")
+    (tmp_path / root).mkdir()
+    (tmp_path / root / "pyproject.toml").write_text(project)
+    assert packaged.in_checkout() is ours
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ import sys
 
 import pytest
 
-from coefficients.catalogue import AS_PRINTED, names, resolve
+from coefficients.catalogue import AS_PRINTED, exported_functions, names, resolve
 from coefficients.packaged import FUNCTIONS
 from programs import LANGUAGES
-from quantities import functions, problems
+from quantities import problems
 from shadefit import completion
 from shadefit.commands.selection import ALL, selection
 
@@ -17,8 +17,8 @@ def test_the_names_that_are_repeated_are_the_real_ones():
     assert list(completion.QUANTITIES) == list(problems())
     exact = [f"exact/{p.name}" for p in problems().values() if p.exact_code is not None]
     assert list(completion.EXACT) == exact
-    assert list(completion.FUNCTIONS) == list(functions())
-    assert {name.partition("/")[0] for name in functions()} == set(FUNCTIONS)
+    assert list(completion.FUNCTIONS) == list(exported_functions())
+    assert {name.partition("/")[0] for name in exported_functions()} == set(FUNCTIONS)
 
 
 def test_all_that_there_is_is_completed():

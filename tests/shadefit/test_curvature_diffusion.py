@@ -76,7 +76,8 @@ def test_the_equivalent_cylinder_has_at_most_half_of_the_error_of_curvature_alon
         seen = lit(surface, 100, 5, 4)
         rms = {key: np.sqrt(np.mean(each[:, 0] ** 2)) for key, each in errors(seen).items()}
         best = rms[BLURRED]
-        assert best == min(rms.values()), name
+        # On the sphere there is no drift, and blurring changes nothing but the rounding.
+        assert best <= min(rms.values()) * (1 + 1e-9), name
         assert best <= 0.5 * rms["along the light"], name
         assert rms["effective"] < rms["along the light"], name
         if name == "sphere 10":

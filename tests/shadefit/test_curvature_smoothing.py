@@ -7,7 +7,7 @@ import pytest
 from shadefit.curvature import curvature, mesh
 from shadefit.curvature.gaussian_sums import REACH, blocks, in_plane
 from shadefit.curvature.generators import cylinder, ellipsoid, finger, torus
-from shadefit.curvature.smoothing import normal_drift, smoothed
+from shadefit.curvature.smoothing import normal_drift, smoothed, smoothed_with_drift
 from shadefit.curvature.surfaces import Torus, normals_and_tensors
 from shadefit.curvature.tensors import space_tensors
 from shading.curvature import carried
@@ -60,6 +60,9 @@ def test_copies_of_a_vertex_do_not_change_smoothing():
     expected = smoothed(EGG, whole, [3.0]).tensors[corners]
     np.testing.assert_allclose(smoothed(split, parts, [3.0]).tensors, expected, atol=1e-14)
     found = normal_drift(split, parts)
+    both = smoothed_with_drift(split, parts)
+    np.testing.assert_array_equal(both[0].tensors, smoothed(split, parts, [1.4]).tensors)
+    np.testing.assert_array_equal(both[1], found)
     np.testing.assert_allclose(found, normal_drift(EGG, whole)[corners], atol=1e-14)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from coefficients.packaged import packaged_table
 from coefficients.table import parse
-from shadefit.encoding import shown, shown_json
+from shadefit.encoding import shown, shown_json, visible
 
 
 @pytest.mark.parametrize(
@@ -44,6 +44,26 @@ def test_json_escapes_what_the_encoding_lacks(monkeypatch):
     escaped = shown_json(text)
     assert escaped.isascii()
     assert json.loads(escaped) == json.loads(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "seen"),
+    [
+        ("\x1b]0;owned\x07.json", r"\x1b]0;owned\x07.json"),
+        ("\x9b31m", r"\x9b31m"),
+        ("gpj\u202eexe", r"gpj\u202eexe"),
+        ("a\u200bb\u2066c\ufeff", r"a\u200bb\u2066c\ufeff"),
+        ("\udcff\u2028", r"\udcff\u2028"),
+        ("a\rb\tc\x7f", r"a\rb\tc\x7f"),
+        ("two\nlines", "two\nlines"),
+        ("θf ≥ ½, 漢字 🎨 65\u202f%", "θf ≥ ½, 漢字 🎨 65\u202f%"),
+    ],
+)
+def test_hidden_characters_are_made_visible(text, seen):
+    assert visible(text) == seen
+    data = json.dumps({"text": text}, ensure_ascii=False)
+    assert json.loads(shown_json(data)) == {"text": text}
+    assert visible(shown_json(data)) == shown_json(data)
 
 
 def run(*arguments: str, encoding: str) -> str:

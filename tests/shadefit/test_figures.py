@@ -345,6 +345,19 @@ def test_the_style_stays_inside_its_pictures():
     assert dict(mpl.rcParams) == before
 
 
+def test_settings_of_the_user_change_no_picture():
+    import matplotlib as mpl  # noqa: PLC0415
+
+    def draw():
+        figure = Figure(figsize=(1, 1))
+        figure.subplots().plot([1, 2])
+        return figure
+
+    plain = render(draw)
+    with mpl.rc_context({"axes.linewidth": 5, "svg.fonttype": "none", "savefig.facecolor": "red"}):
+        assert render(draw) == plain
+
+
 def test_named_pictures_are_written_and_others_refused(tmp_path, capsys):
     assert main_status("figures", "figure-6", "--out", str(tmp_path)) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-6.png", "figure-6.svg"]

@@ -67,6 +67,22 @@ def test_steps_and_the_time_left_are_shown(monkeypatch):
     assert "forms: fitting" in text and "3 of 40" in text and "left" in text
 
 
+def test_a_name_is_no_markup_and_does_not_steer_the_terminal(monkeypatch):
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stderr", screen)
+    monkeypatch.setenv("TERM", "xterm")
+    with stages() as shown:
+        stage = shown.begin("[/bold] a.json")
+        shown.progress.refresh()
+        assert "[/bold] a.json" in screen.getvalue()
+        stage.show("\x1b]0;owned\x07")
+        shown.progress.refresh()
+        stage.end("\u202e")
+        text = screen.getvalue()
+    assert r"\x1b]0;owned\x07" in text and "\x1b]0" not in text
+    assert "\u202e" not in text
+
+
 def test_nothing_is_shown_without_a_terminal(capsys):
     with stages() as shown:
         shown.begin("forms", total=2).advance()

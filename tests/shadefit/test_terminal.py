@@ -11,7 +11,7 @@ import pytest
 
 from coefficients.packaged import names, packaged_table
 from programs.rounded_text import rounded_up
-from shadefit.terminal import apart_from, print_table
+from shadefit.terminal import apart_from, print_lines, print_table
 from tests.shadefit.screen import Session, screen
 
 
@@ -99,6 +99,15 @@ def test_what_is_said_beside_a_file_on_standard_output_goes_to_standard_error(ca
             print_table("title", ["name"], [["a"]])
         out, error = capsys.readouterr()
         assert ("title" in error, "title" in out) == (Path("-") in files, Path("-") not in files)
+
+
+def test_names_of_files_do_not_steer_the_terminal(capsys):
+    name = "\x1b[2J\u202e.json"
+    print_table(name, [name], [[name]], name)
+    print_lines(Path(name), name)
+    out = capsys.readouterr().out
+    assert out.count(r"\x1b[2J\u202e.json") == 6
+    assert "\x1b" not in out and "\u202e" not in out
 
 
 def test_an_interruption_leaves_one_clean_line(tmp_path):

@@ -132,8 +132,7 @@ def test_constants_are_those_of_a_least_squares_fit():
 
     exact = exact_lit(points)
     fitted = least_squares(lambda k: lit(k) - exact, [1.0, 1.0]).x
-    np.testing.assert_allclose(fitted, ambient._LIT_FRACTION, rtol=0, atol=5e-3)
+    np.testing.assert_allclose(fitted, ambient.LIT_FRACTION_CONSTANTS, rtol=0, atol=5e-3)
     total = exact_layer(points)
     fitted = least_squares(lambda k: layer(k) - total, [1.0, 1.0, 1.0, 0.0]).x
-    stated = (*ambient._LIT_LAYER, *ambient._CORRELATION)
-    np.testing.assert_allclose(fitted, stated, rtol=0, atol=5e-4)
+    np.testing.assert_allclose(fitted, ambient.LIT_LAYER_CONSTANTS, rtol=0, atol=5e-4)

@@ -19,5 +19,8 @@ inline float rsqrt(float x) { return rsqrtf(x); }
 inline float __saturatef(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); }
 inline float fdividef(float x, float y) { return x / y; }
 
+struct float3 { float x, y, z; };
+struct double3 { double x, y, z; };
+
 using std::max;
 using std::min;

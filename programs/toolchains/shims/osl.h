@@ -79,8 +79,15 @@ inline real cosh(real x) { return std::cosh(x.v); }
 inline real tanh(real x) { return std::tanh(x.v); }
 inline real erf(real x) { return std::erf(x.v); }
 
+struct triple {
+    real part[3];
+    real& operator[](int index) { return part[index]; }
+    const real& operator[](int index) const { return part[index]; }
+};
+
 }  // namespace shadefit
 
 // All output arguments here are arrays, which C++ passes by address anyway.
 #define output
 #define float shadefit::real
+#define vector shadefit::triple

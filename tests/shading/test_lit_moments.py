@@ -6,7 +6,7 @@ import jax
 import numpy as np
 
 from integrals import PS
-from integrals.fuzz.lit_moments import lit_moments
+from shading.fuzz.lit_moments import lit_moments
 from tests.batches import batched
 from tests.integrals.problems import RIGHT, awkward_points
 

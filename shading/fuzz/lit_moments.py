@@ -11,7 +11,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jax import Array
 
-from integrals.fuzz.ps import FLOAT64_STEPS, lit_cone, reflected_up
+from shading.fuzz.lit_cone import FLOAT64_STEPS, lit_cone, reflected_up
 from shading.types import Scalar
 
 

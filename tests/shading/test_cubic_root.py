@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from integrals.fuzz.cubic_root import at_least, magnitude, newton_step, positive_root, tangent_step
+from shading.cubic_root import at_least, magnitude, newton_step, positive_root, tangent_step
 from tests.integrals.differences import difference
 
 EPS = np.finfo(float).eps

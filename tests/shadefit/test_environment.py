@@ -1,0 +1,114 @@
+"""Commands in hostile environments: neither bytes nor exit status change."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from shadefit.environment import settle
+
+FIXED = {
+    "JAX_ENABLE_X64": "1",
+    "JAX_PLATFORMS": "cpu",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MPLBACKEND": "agg",
+}
+# Each of the first group changed numbers, or ended a command with a traceback or an abortion.
+HOSTILE = {
+    "JAX_PLATFORMS": "foo",
+    "XLA_FLAGS": "--rubbish=1",
+    "JAX_NUMPY_RANK_PROMOTION": "raise",
+    "JAX_DISABLE_JIT": "1",
+    "JAX_DEFAULT_MATMUL_PRECISION": "foo",
+    "JAX_TRANSFER_GUARD": "disallow",
+    "EQX_ON_ERROR": "foo",
+    "JAX_ENABLE_X64": "0",
+    "JAX_NUMPY_DTYPE_PROMOTION": "strict",
+    "JAX_DEBUG_NANS": "1",
+    "OPENBLAS_CORETYPE": "Prescott",
+    "NPY_DISABLE_CPU_FEATURES": "AVX2",
+    "MPLBACKEND": "rubbish",
+}
+ENCODINGS = [
+    {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "C"},
+    {"PYTHONUTF8": "0", "LC_ALL": "en_US.ISO-8859-1"},
+    *({"PYTHONIOENCODING": each} for each in ("ascii", "latin-1", "cp1252", "utf-16")),
+]
+
+
+def shadefit(folder, *arguments, **environment):
+    """Run a command in a folder; returns its exit status, output, messages and files."""
+    before = set(folder.iterdir())
+    clean = {key: value for key, value in os.environ.items() if not key.startswith(("JAX", "XLA"))}
+    done = subprocess.run(
+        [sys.executable, "-m", "shadefit", *arguments],
+        cwd=folder,
+        env={**clean, "PYTHONPATH": os.pathsep.join(sys.path), **environment},
+        capture_output=True,
+        check=False,
+    )
+    new = [path for path in folder.iterdir() if path.is_file() and path not in before]
+    made = {path.name: path.read_bytes() for path in new}
+    for path in new:
+        path.unlink()
+    return done.returncode, done.stdout, done.stderr, made
+
+
+def test_variables_that_change_numbers_are_fixed_and_others_stay():
+    others = {"HOME": "/", "JAX_COMPILATION_CACHE_DIR": "/c", "JAX_PERSISTENT_CACHE_MIN_SIZE": "1"}
+    flags = "--xla_cpu_enable_fast_math=true --xla_force_host_platform_device_count=2 rubbish"
+    given = {**HOSTILE, **others, "XLA_FLAGS": flags}
+    settle(given)
+    devices = "--xla_force_host_platform_device_count=2"
+    assert given == {**others, **FIXED, "XLA_FLAGS": devices}
+    settle(given)
+    assert given["XLA_FLAGS"] == devices
+    bare = {}
+    settle(bare)
+    assert bare == FIXED
+
+
+def test_all_hostile_variables_together_end_no_command(tmp_path):
+    status, out, err, made = shadefit(tmp_path, "cost", "q", "--json", **HOSTILE)
+    assert (status, err, made) == (0, b"", {})
+    assert [each["operations"] for each in json.loads(out)["tables"][0]["functions"]] == [6]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_variable_changes_no_byte(tmp_path, name, exported):
+    value = HOSTILE[name]
+    assert shadefit(tmp_path, "export", "q", "--to", "c", "-o", "q.c", **{name: value}) == exported
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("environment", ENCODINGS, ids=lambda each: "-".join(each.values()))
+def test_an_encoding_changes_no_byte_of_a_file(tmp_path, environment, exported):
+    command = ("export", "q", "--to", "c", "-o", "q.c")
+    assert shadefit(tmp_path, *command, **environment) == exported
+    status, out, err, _ = shadefit(tmp_path, "list", **environment)
+    assert (status, err) == (0, b"") and len(out) > 1000
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("clean")
+    found = shadefit(folder, "export", "q", "--to", "c", "-o", "q.c")
+    assert found[0] == 0 and found[3]["q.c"].startswith(b"// SPDX")
+    return found
+
+
+@pytest.mark.slow
+def test_settings_of_matplotlib_in_the_folder_change_no_picture(tmp_path):
+    command = ("figures", "figure-6", "--out", "made")
+    clean = drawn(tmp_path, *command)
+    (tmp_path / "matplotlibrc").write_text("font.size: 20\nsvg.fonttype: none\nbackend: foo\n")
+    assert drawn(tmp_path, *command, MPLBACKEND="rubbish") == clean
+    assert sorted(clean) == ["figure-6.png", "figure-6.svg"]
+
+
+def drawn(folder, *command, **environment):
+    assert shadefit(folder, *command, **environment, MPLCONFIGDIR=str(folder))[0] == 0
+    return {path.name: path.read_bytes() for path in (folder / "made").iterdir()}
