@@ -162,8 +162,9 @@ def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, j
         large = render_large(scenes[-1], settings, EXACT, partial(stage.show, text))
         stage.end()
     sheet, exr = out / "render.png", out / "render.exr"
-    write_whole_bytes(sheet, draw_comparisons(comparisons, large))
+    # Each takes much memory, and gives it back.
     write_whole_bytes(exr, write_exr(exr_channels(comparisons)))
+    write_whole_bytes(sheet, draw_comparisons(comparisons, large))
     rows = [row for comparison in comparisons for row in comparison.statistics()]
     if json:
         files = [str(sheet), str(exr)]

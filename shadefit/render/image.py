@@ -17,7 +17,7 @@ SAMPLES = 2
 LARGE, LARGE_SAMPLES = 720, 3
 # An image is rendered in bands of at most so many samples, because all at once would need
 # gigabytes.
-_BAND, _LARGE_BAND = 1 << 18, 1 << 19
+_BAND, _LARGE_BAND = 1 << 17, 1 << 17
 
 
 Progress = Callable[[int, int], None]

@@ -50,4 +50,4 @@ def draw_sweep(scene: Scene, settings: Settings, progress: Progress = silent) ->
             axis.set_title(f"tilt {tilt}°")
         return figure
 
-    return render(draw)["png"]
+    return render(draw, ["png"])["png"]
