@@ -39,6 +39,10 @@ def write_exr(channels: dict[str, np.ndarray], pixel: str = "<f4") -> bytes:
     line = 8 + size * width * len(names)
     first = len(header) + 8 * height
     offsets = struct.pack(f"<{height}Q", *(first + line * y for y in range(height)))
-    stacked = np.stack([channels[name] for name in names], axis=1).astype(pixel)
-    rows = [struct.pack("<2i", y, line - 8) + stacked[y].tobytes() for y in range(height)]
-    return header + offsets + b"".join(rows)
+    # Each line of the image has its number, its size, and then a row of each channel.
+    lines = np.zeros((height, line), np.uint8)
+    for y in range(height):
+        lines[y, :8] = np.frombuffer(struct.pack("<2i", y, line - 8), np.uint8)
+        row = np.stack([channels[name][y].astype(pixel) for name in names])
+        lines[y, 8:] = row.reshape(-1).view(np.uint8)
+    return b"".join([header, offsets, lines.data])

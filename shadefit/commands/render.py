@@ -1,6 +1,7 @@
 """`shadefit render`: render scenes with exact functions and with tables, as PNG and EXR."""
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -124,11 +125,15 @@ def _number(value: float | int) -> float:
 def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
     from shadefit.outputs import RenderOutput
+    from shadefit.progress import stages
     from shadefit.render.sweep import draw_sweep
     from shadefit.terminal import print_json, print_lines
 
     path = out / "sweep.png"
-    write_whole_bytes(path, draw_sweep(scene, settings))
+    with stages() as progress:
+        stage = progress.begin(scene.name)
+        made = draw_sweep(scene, settings, partial(stage.show, scene.name))
+    write_whole_bytes(path, made)
     if json:
         print_json(RenderOutput(files=[str(path)], images=[]))
     else:
@@ -148,17 +153,18 @@ def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, j
 
     comparisons = []
     with stages() as progress:
-        stage = progress.begin("", total=len(scenes) + 1)
         for scene in scenes:
-            stage.show(scene.name)
-            comparisons.append(compare(scene, settings))
-            stage.advance()
-        stage.show(f"{scenes[-1].name}, large")
-        large = render_large(scenes[-1], settings, EXACT)
-        stage.advance()
+            stage = progress.begin(scene.name)
+            comparisons.append(compare(scene, settings, partial(stage.show, scene.name)))
+            stage.end()
+        text = f"{scenes[-1].name}, large"
+        stage = progress.begin(text)
+        large = render_large(scenes[-1], settings, EXACT, partial(stage.show, text))
+        stage.end()
     sheet, exr = out / "render.png", out / "render.exr"
-    write_whole_bytes(sheet, draw_comparisons(comparisons, large))
+    # Each takes much memory, and gives it back.
     write_whole_bytes(exr, write_exr(exr_channels(comparisons)))
+    write_whole_bytes(sheet, draw_comparisons(comparisons, large))
     rows = [row for comparison in comparisons for row in comparison.statistics()]
     if json:
         files = [str(sheet), str(exr)]

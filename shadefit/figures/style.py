@@ -1,7 +1,7 @@
 """One style for every picture, whose colours can be told apart by the colour-blind and in print."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -60,8 +60,10 @@ DASHES = {
 MARKERS = {"exact": "*", "published": "s", "printed": "X", "refitted": "o", "best": "D"}
 
 
-def render(draw: Callable[[], Figure]) -> dict[str, bytes]:
+def render(draw: Callable[[], Figure], formats: Sequence[str] = FORMATS) -> dict[str, bytes]:
     """Draw a figure in this style. Returns its files by extension, the same bytes each time.
+
+    `formats` are the extensions, in the order of `FORMATS`.
 
     The user's settings of Matplotlib, such as a file `matplotlibrc` in the current folder, do not
     count.
@@ -70,7 +72,7 @@ def render(draw: Callable[[], Figure]) -> dict[str, bytes]:
         mpl.rcdefaults()
         mpl.rcParams.update(_STYLE)
         figure = draw()
-        return {extension: _encode(figure, extension) for extension in FORMATS}
+        return {extension: _encode(figure, extension) for extension in formats}
 
 
 def _encode(figure: Figure, extension: str) -> bytes:

@@ -1,13 +1,12 @@
 """A scene rendered with tables, against the same scene rendered with exact functions."""
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from shadefit.render.functions import EXACT, table_sets
-from shadefit.render.image import SAMPLES, render_image
+from shadefit.render.image import Progress, render_images, silent
 from shadefit.render.scenes import Scene
 from shadefit.render.settings import Settings
 
@@ -44,14 +43,10 @@ class Comparison:
         return rows
 
 
-def compare(scene: Scene, settings: Settings) -> Comparison:
+def compare(scene: Scene, settings: Settings, progress: Progress = silent) -> Comparison:
     """Render a scene with exact functions and with every set of tables."""
     every = (EXACT, *table_sets())
-    hits = scene.hits(settings.size * SAMPLES)
-    # Compiling one image uses one core; a second thread uses another core for the next image.
-    with ThreadPoolExecutor(2) as workers:
-        images = list(workers.map(lambda each: render_image(scene, settings, each, hits), every))
-    exact, *others = images
+    exact, *others = render_images(scene, [(settings, each) for each in every], progress)
     names = [each.name for each in every[1:]]
     return Comparison(scene, exact, dict(zip(names, others, strict=True)))
 

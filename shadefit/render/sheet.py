@@ -29,7 +29,7 @@ def draw_comparisons(comparisons: list[Comparison], large: np.ndarray) -> bytes:
 
     A column has the exact image, and the difference of the image of each set of tables from it.
     """
-    return render(lambda: _draw(comparisons, large))["png"]
+    return render(lambda: _draw(comparisons, large), ["png"])["png"]
 
 
 def _draw(comparisons: list[Comparison], large: np.ndarray) -> Figure:

@@ -9,7 +9,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from shadefit.figures.style import render
 from shadefit.render.functions import EXACT
-from shadefit.render.image import SAMPLES, render_image
+from shadefit.render.image import Progress, render_images, silent
 from shadefit.render.scenes import Scene
 from shadefit.render.settings import Settings
 from shadefit.render.srgb import to_srgb
@@ -22,23 +22,18 @@ TILTS = (0, 23, 45, 90)
 _INCHES = 1.7
 
 
-def draw_sweep(scene: Scene, settings: Settings) -> bytes:
+def draw_sweep(scene: Scene, settings: Settings, progress: Progress = silent) -> bytes:
     """Return a PNG of every combination, drawn with exact functions.
 
     A row has one density and spread, a column has one tilt; they replace those of `settings`.
     """
     layers = list(product(DENSITIES, SPREADS))
-    hits = scene.hits(settings.size * SAMPLES)
-    images = {
-        (layer, tilt): render_image(
-            scene,
-            replace(settings, density=layer[0], spread=layer[1], tilt=float(np.radians(tilt))),
-            EXACT,
-            hits,
-        )
-        for layer in layers
-        for tilt in TILTS
-    }
+    cells = list(product(layers, TILTS))
+    wanted = [
+        (replace(settings, density=density, spread=spread, tilt=float(np.radians(tilt))), EXACT)
+        for (density, spread), tilt in cells
+    ]
+    images = dict(zip(cells, render_images(scene, wanted, progress), strict=True))
 
     def draw() -> Figure:
         size = (_INCHES * len(TILTS) + 0.3, _INCHES * len(layers) + 0.3)
@@ -55,4 +50,4 @@ def draw_sweep(scene: Scene, settings: Settings) -> bytes:
             axis.set_title(f"tilt {tilt}°")
         return figure
 
-    return render(draw)["png"]
+    return render(draw, ["png"])["png"]

@@ -6,6 +6,7 @@ import json
 import os
 import struct
 import zlib
+from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
@@ -28,7 +29,7 @@ from shadefit.render import image, sheet
 from shadefit.render.comparison import Comparison
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import CHOICES, EXACT, table_sets
-from shadefit.render.image import render_image
+from shadefit.render.image import render_image, render_images
 from shadefit.render.scenes import SCENES, cloth_height
 from shadefit.render.settings import Settings
 from shadefit.render.shade import _ROOTS, BACKDROP, interpolated_g, sky_coefficients
@@ -222,11 +223,25 @@ def test_bands_of_rows_are_the_whole(name):
 @pytest.mark.slow
 def test_the_large_image_is_the_average_of_its_samples(monkeypatch):
     settings = Settings(size=SIZE)
-    monkeypatch.setattr(image, "_BAND", 7 * SIZE * 4)
+    monkeypatch.setattr(image, "_LARGE_BAND", 7 * SIZE * 4)
     monkeypatch.setattr(image, "LARGE", 10)
     monkeypatch.setattr(image, "LARGE_SAMPLES", 2)
     large = image.render_large(SCENES["sphere"], settings, EXACT)
     np.testing.assert_allclose(large, render_image(SCENES["sphere"], settings, EXACT), rtol=1e-9)
+
+
+def test_bands_of_an_image_are_the_image(monkeypatch):
+    settings, told = Settings(size=SIZE), []
+    whole = render_image(SCENES["cloth"], settings, EXACT)
+    # A band of 15 rows of pixels; the last has fewer.
+    monkeypatch.setattr(image, "_BAND", 15 * SIZE * image.SAMPLES**2)
+    wanted = [(settings, EXACT), (replace(settings, sun=0.0), EXACT)]
+    found, dark = render_images(
+        SCENES["cloth"], wanted, lambda done, total: told.append((done, total))
+    )
+    np.testing.assert_array_equal(found, whole)
+    assert dark.mean() < found.mean()
+    assert told == [(k, -(-SIZE // 15)) for k in range(-(-SIZE // 15))]
 
 
 def test_the_sheet_shows_differences_fifty_times_as_large():

@@ -228,6 +228,28 @@ def test_what_is_no_table_of_a_known_quantity_is_refused(tmp_path, capsys, name,
     assert captured.err.count("\n") == 1
 
 
+def test_pictures_that_are_drawn_already_are_taken_as_they_are(tmp_path, monkeypatch, capsys):
+    folder, out, asked = tmp_path / "drawn", tmp_path / "report.html", {}
+    folder.mkdir()
+    for width, name in enumerate(pictures(), 1):
+        (folder / f"{name}.png").write_bytes(png(width))
+    monkeypatch.setattr("shadefit.report.page.page", lambda drawn, _: asked.update(drawn) or "page")
+    command = ["report", "--out", str(out), "--pictures", str(folder)]
+    with pytest.raises(SystemExit) as stopped:
+        main(command)
+    assert not stopped.value.code
+    assert out.read_text() == "page"
+    assert asked == {name: png(width) for width, name in enumerate(pictures(), 1)}
+    assert list(asked) == list(pictures())
+    (folder / "frontier.png").write_text("no picture")
+    for place, said in ((folder, "frontier.png is no picture"), (out, "allowed is a folder")):
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as stopped:
+            main([*command[:-1], str(place)])
+        assert stopped.value.code == 2
+        assert said in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_the_command_writes_everything(tmp_path):
     out = tmp_path / "report.html"
