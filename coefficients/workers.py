@@ -16,6 +16,9 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
+from programs.toolchains.running import end_all
+from programs.toolchains.temporary import discard_unfinished
+
 # Processes may end this many times before the work is given up: a task may be what ends them.
 _LOSSES = 5
 # The seconds that a cluster has to answer.
@@ -123,6 +126,8 @@ def _prepare() -> None:
 
     def end_with_parent() -> None:
         parent.join()
+        end_all()
+        discard_unfinished(at_end=True)
         os._exit(1)
 
     threading.Thread(target=end_with_parent, daemon=True).start()
