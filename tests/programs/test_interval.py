@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from programs.bounding import arithmetic as iv
 from programs.bounding import interval
 from programs.functions import Function, Parameter
 from programs.program import Program
@@ -274,3 +275,20 @@ def test_an_operation_without_an_interval_version_is_refused_by_name():
     program = Program("Random", ("x", "y"), (Step("gamma", (0,)),), (2,))
     with pytest.raises(ValueError, match="'gamma'"):
         interval.enclose(program, np.zeros((1, 2)), np.ones((1, 2)))
+
+
+def test_a_tangent_is_unbounded_exactly_on_boxes_with_a_pole():
+    lower = np.array([-1.0, 1.0, 2.0, -2.0, 4.0, 4.8, 11.1, -4.6])
+    upper = np.array([1.0, 2.0, 4.0, -1.0, 5.0, 7.8, 13.9, -1.7])
+    found = iv.tan(iv.Interval(lower, upper))
+    poles = [False, True, False, True, True, False, False, False]
+    assert np.isinf(found.lower).tolist() == np.isinf(found.upper).tolist() == poles
+    inside = ~np.array(poles)
+    assert (found.lower <= np.tan(lower))[inside].all()
+    assert (found.upper >= np.tan(upper))[inside].all()
+
+
+def test_an_arc_cosine_leaves_out_what_is_outside_its_domain():
+    found = iv.acos(iv.Interval(np.array([0.5, -3.0]), np.array([1.5, 0.0])))
+    np.testing.assert_allclose(found.lower, [0.0, np.pi / 2], rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(found.upper, [np.pi / 3, np.pi], rtol=1e-12)
