@@ -1,7 +1,7 @@
 """The quantity E_lit: the part of uniform light that one scattering event sends to a view.
 
-It is no built-in quantity, because an ambient model has constants of its own for it. The commands
-take it from a problem file, examples/lit_fraction.py.
+It is not in the list of built-in quantities, because each ambient model has constants of its own
+for it.
 """
 
 import jax
@@ -12,7 +12,7 @@ from quantities.calling_convention import Argument, CallingConvention
 from quantities.fuzz.lit_forms import AREA_RATIO, seen
 from quantities.problem import Problem
 
-# E_lit is up to 1.12 where the ratio to 1 − P_s is largest (docs/ambient-light.md).
+# E_lit may be a little above one (docs/ambient-light.md).
 _CODOMAIN = (0.0, 1.25)
 
 

@@ -1,32 +1,20 @@
-"""The quantity E_lit, which a problem file offers: its form, the arguments of its code, its fit."""
-
-from pathlib import Path
+"""The quantity E_lit: its form, the arguments of its code, and its fit."""
 
 import numpy as np
 import pytest
 
 from fitting.fit import fit
+from quantities.fuzz.lit import LIT
 from quantities.fuzz.lit_forms import AREA_RATIO
-from quantities.loader import load_problems
-from quantities.registry import unregister
 from shading import lit_fraction
 from shading.fuzz.ambient import LIT_FRACTION_CONSTANTS
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "lit_fraction.py"
 
-
-@pytest.fixture(scope="module")
-def quantity():
-    (found,) = load_problems(str(EXAMPLE))
-    yield found
-    unregister(found.name)
-
-
-def test_form_is_the_formula_of_the_ambient_model(quantity):
-    assert quantity.name == "lit"
-    assert quantity.default is AREA_RATIO
+def test_form_is_the_formula_of_the_ambient_model():
+    assert LIT.name == "lit"
+    assert LIT.default is AREA_RATIO
     point = (0.4, 0.7, 0.9, 2.0)
-    (columns,) = quantity.calling.columns(np.array([point]))
+    (columns,) = LIT.calling.columns(np.array([point]))
     cos_vt, scattered = columns
     expected = lit_fraction(scattered, cos_vt, point[0])
     assert abs(AREA_RATIO(np.array(LIT_FRACTION_CONSTANTS), *point) - expected) < 1e-14
