@@ -92,7 +92,8 @@ def written(call: Callable[..., Any], axes: Sequence[Axis], results: int | None)
     ValueError for an operation that cannot be exported.
     """
     parameters = tuple(Parameter(axis.name, _ANY) for axis in axes)
-    with jax.ensure_compile_time_eval():
+    # The text is the same in either precision: quantities can be imported in both.
+    with jax.ensure_compile_time_eval(), jax.enable_x64(True):
         program = trace(Function("of", "", parameters, results, "result", call))
     return formulas(program, [axis.symbol for axis in axes])
 
