@@ -65,7 +65,7 @@ docs: .venv/.docs  ## build the documentation site into build/site, and check it
 	rm -rf build/site
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -b html -c docs/site \
 	    -d build/doctrees . build/site
-	$(BIN)/shadefit report --out build/site/explorer.html
+	$(BIN)/shadefit report --pictures docs/figures --out build/site/explorer.html
 	$(BIN)/python docs/site/check_links.py build/site
 
 .venv/.docs: .venv/.ready requirements-docs.lock

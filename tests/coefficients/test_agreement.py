@@ -71,7 +71,10 @@ CONTRADICTIONS = {
         {"arguments": G_ARGUMENTS[::-1]},
         r"arguments as \['cos_v', 'density'\], form 'rational-g' has \['density', 'cos_v'\]",
     ),
-    "an argument twice": ({"arguments": [*G_ARGUMENTS, G_ARGUMENTS[1]]}, "g gives arguments as"),
+    "an argument twice": (
+        {"arguments": [*G_ARGUMENTS, G_ARGUMENTS[1]]},
+        "arguments: a name is there twice",
+    ),
     "one argument": ({"arguments": G_ARGUMENTS[:1]}, r"arguments as \['density'\]"),
     "names in another order": (
         {"coefficient_names": G_NAMES[::-1]},

@@ -14,6 +14,12 @@ from coefficients.workers import Cluster, LocalProcesses
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.fixture(autouse=True)
+def functions_of_this_file_can_be_imported(monkeypatch):
+    """Other processes import them from the folder of the project."""
+    monkeypatch.syspath_prepend(ROOT)
+
+
 def squared(task: int) -> tuple[int, int]:
     return task**2, os.getpid()
 

@@ -9,12 +9,8 @@ import pytest
 from scipy.integrate import cubature
 
 from integrals import PS
-from shading.fuzz.lit_cone import (
-    FLOAT32_STEPS,
-    FLOAT64_STEPS,
-    quick_fraction_at,
-    scattered_fraction,
-)
+from integrals.fuzz.ps import quick_fraction_at
+from shading.fuzz.lit_cone import FLOAT32_STEPS, FLOAT64_STEPS, scattered_fraction
 from tests.batches import batched
 from tests.integrals.problems import RIGHT, awkward_points, distance, exact_ps
 

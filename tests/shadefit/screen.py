@@ -13,9 +13,11 @@ import time
 
 _CONTROL = re.compile(r"\x1b\[([?0-9;]*)([A-Za-z])|\x1b\][^\x07]*\x07|\x1b[=>]")
 _ENDS_WITHIN = 120.0
-# The terminal becomes that of the session, so that its keys send signals.
+# The terminal becomes that of the session, so that its keys send signals. Tests that run in the
+# background may have been started with SIGINT ignored.
 _IN_OWN_TERMINAL = (
-    "import fcntl, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0)\n"
+    "import fcntl, signal, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0)\n"
+    "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
     "from shadefit.__main__ import main; main()"
 )
 

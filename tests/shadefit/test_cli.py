@@ -366,7 +366,7 @@ def test_a_refusal_names_the_option_its_unit_and_what_is_allowed(capsys, argumen
     assert words in refuses(capsys, *arguments)
 
 
-@pytest.mark.parametrize("grid", ["1", "0", "-3", "8", "130", "x", "1e9"])
+@pytest.mark.parametrize("grid", ["1", "0", "-3", "8", "1026", "x", "1e9"])
 def test_a_grid_that_cannot_be_fitted_is_refused(capsys, tmp_path, grid):
     refuses(capsys, "refit", "all", "--grid", grid, "--out", str(tmp_path / "out"))
     assert not (tmp_path / "out").exists()
