@@ -35,7 +35,7 @@ def hill_form(reference: Reference) -> Form:
         name="hill-skin",
         equation=(
             "e = exp(−1/s²); p = 1 + 2·e² − s²; b = (e − e²)·s² − e²; x = √(1 − p); "
-            "y = (c0·c + x/(4·c0))²/x where |c0·c| ≤ x/(4·c0), else min(max(c, 0), 1); "
+            "x1 = x/(4·c0); z = max(c0·c, −x1); d = min(z − x1, 0); y = z/c0 + d²/x; "
             "D = (p·y + b)/(1 − e²)"
         ),
         reference=reference,

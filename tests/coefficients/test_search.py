@@ -92,7 +92,7 @@ def test_a_refused_form_is_not_tried_again(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_refused_forms_are_counted(tmp_path, monkeypatch):
-    fit, forms = search.fit, []
+    fit, forms = candidates.fit, []
 
     def refuse_the_first(form, *arguments, **options):
         forms.append(form)

@@ -22,7 +22,7 @@ OLD = "the old content\n"
 # The command, and the files that it writes.
 COMMANDS = {
     "export": (["export", "q", "-o", "q.json"], ["q.json"]),
-    "export of code": (["export", "decode/aniso-direct", "--to", "c", "-o", "a.c"], ["a.c"]),
+    "export of code": (["export", "detail/smooth-overlay", "--to", "c", "-o", "a.c"], ["a.c"]),
     "refit": (["refit", "q", "g", "--out", "tables"], ["tables/q.json", "tables/g.json"]),
     "report": (["report", "--out", "report.html"], ["report.html"]),
     "new": (["new", "lobe"], ["lobe.py"]),

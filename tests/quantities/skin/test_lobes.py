@@ -42,7 +42,7 @@ def test_the_error_of_a_profile_is_at_most_that_of_a_lobe(surface, profile):
         error = np.abs(found - np.asarray(exact(np.arccos(COSINES), curvature))).max()
         # Lobes that are wider than the table's domain are clamped to it.
         assert error <= largest * (1 + 1e-3) + 0.2 * beyond
-        assert 1e-5 < error < 0.002
+        assert 1e-5 < error < 0.002 + 0.2 * beyond
 
 
 # Burley's profile for b = 0.7 mm, as the page has it
