@@ -8,6 +8,13 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 
 from coefficients.packaged import Kind
+from shadefit.code_records import CertifiedTable, CostedTable, VerifiedTable
+from shadefit.fuzz_records import (
+    AmbientErrors,
+    AmbientModelErrors,
+    ImageRecord,
+    LargestRadiance,
+)
 from shadefit.material_outputs import (
     CurvatureOutput,
     DetailOutput,
@@ -17,17 +24,11 @@ from shadefit.material_outputs import (
     NdfOutput,
 )
 from shadefit.records import (
-    AmbientErrors,
-    AmbientModelErrors,
-    CertifiedTable,
     ComparisonRecord,
-    CostedTable,
     Count,
     ErrorsRecord,
     EvaluatedTable,
     FoundTable,
-    ImageRecord,
-    LargestRadiance,
     Leg,
     Number,
     Part,
@@ -35,7 +36,6 @@ from shadefit.records import (
     RefittedTable,
     Size,
     TableRecord,
-    VerifiedTable,
     Whole,
 )
 

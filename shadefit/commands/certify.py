@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from coefficients.certify import Certification
     from coefficients.rounding import RoundingBounds
-    from shadefit.records import CertifiedTable
+    from shadefit.code_records import CertifiedTable
 
 
 def certify(
@@ -130,8 +130,8 @@ def _each(
 
 
 def _rounding_record(each: "RoundingBounds") -> "CertifiedTable":
+    from shadefit.code_records import CertifiedTable, RoundingRecord
     from shadefit.commands.table_records import entry_fields
-    from shadefit.records import CertifiedTable, RoundingRecord
 
     upper = {name: None if found is None else found.upper for name, found in each.found.items()}
     return CertifiedTable(
@@ -179,8 +179,8 @@ def _standing(name: str, standing) -> str:
 
 
 def _record(each: "Certification") -> "CertifiedTable":
+    from shadefit.code_records import CertifiedTable, LargestErrorRecord
     from shadefit.commands.table_records import entry_fields
-    from shadefit.records import CertifiedTable, LargestErrorRecord
 
     found = each.found
     largest = None

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from programs import Cost, Function, Throughput
-    from shadefit.records import FunctionRecord, ThroughputRecord
+    from shadefit.code_records import FunctionRecord, ThroughputRecord
 
 
 def cost(
@@ -38,9 +38,9 @@ def cost(
     from coefficients.catalogue import resolve
     from coefficients.code_header import closed_form_beside, costs
     from programs import KINDS, measure_throughput
+    from shadefit.code_records import CostedTable
     from shadefit.commands.table_records import entry_fields
     from shadefit.outputs import CostOutput
-    from shadefit.records import CostedTable
     from shadefit.terminal import print_json, print_table
 
     entry = resolve(table)
@@ -111,7 +111,7 @@ def _record(
 ) -> "FunctionRecord":
     from dataclasses import asdict
 
-    from shadefit.records import FunctionRecord
+    from shadefit.code_records import FunctionRecord
 
     return FunctionRecord(
         function=function.name,
@@ -126,6 +126,6 @@ def _record(
 def _rate(rate: "Throughput") -> "ThroughputRecord":
     from dataclasses import asdict
 
-    from shadefit.records import ThroughputRecord
+    from shadefit.code_records import ThroughputRecord
 
     return ThroughputRecord.model_validate({**asdict(rate), "ratio": rate.ratio})

@@ -10,7 +10,7 @@ from shadefit.completion import complete_language, complete_shader
 
 if TYPE_CHECKING:
     from programs.toolchains.verification import Check, Difference
-    from shadefit.records import CheckRecord, CodeErrors
+    from shadefit.code_records import CheckRecord, CodeErrors
 
 ADVICE = "in a checkout, 'make toolchains' installs the compilers that are missing"
 
@@ -47,10 +47,10 @@ def verify(
     from coefficients.catalogue import resolve
     from coefficients.exported_code import trial_of
     from programs import check
+    from shadefit.code_records import VerifiedTable
     from shadefit.commands.table_records import entry_fields
     from shadefit.outputs import VerifyOutput
     from shadefit.progress import stages
-    from shadefit.records import VerifiedTable
     from shadefit.terminal import print_json
 
     entries = {name: resolve(name) for name in tables}
@@ -129,7 +129,7 @@ def _print(name: str, checks: "list[Check]") -> None:
 
 
 def _record(check: "Check") -> "CheckRecord":
-    from shadefit.records import CheckRecord
+    from shadefit.code_records import CheckRecord
 
     points = {name: check.points for name in ("form", "units", "allowed")}
     points["integral"] = check.integral_points
@@ -143,7 +143,7 @@ def _record(check: "Check") -> "CheckRecord":
 
 
 def _errors(difference: "Difference | None", points: int) -> "CodeErrors | None":
-    from shadefit.records import CodeErrors
+    from shadefit.code_records import CodeErrors
 
     if difference is None:
         return None
