@@ -26,20 +26,14 @@ if TYPE_CHECKING:
     from fitting.points.domain import Domain as Domain
     from fitting.points.domain import common_domain as common_domain
 
-_MODULES = {
-    "Errors": "fitting.errors",
-    "form_values": "fitting.errors",
-    "judge": "fitting.errors",
-    "Fit": "fitting.fit",
-    "FittedForm": "fitting.form",
-    "Form": "fitting.form",
-    "Proofs": "fitting.form",
-    "Stage": "fitting.form",
-    "plain_form": "fitting.form",
-    "Goal": "fitting.goal",
-    "Domain": "fitting.points.domain",
-    "common_domain": "fitting.points.domain",
+_HOMES = {
+    "fitting.errors": ("Errors", "form_values", "judge"),
+    "fitting.fit": ("Fit",),
+    "fitting.form": ("FittedForm", "Form", "Proofs", "Stage", "plain_form"),
+    "fitting.goal": ("Goal",),
+    "fitting.points.domain": ("Domain", "common_domain"),
 }
+_MODULES = {name: module for module, names in _HOMES.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:

@@ -2,7 +2,11 @@
 
 from functools import partial
 
-from quantities.fuzz import PS, VELVET, G, Q, R
+from quantities.fuzz.g import G
+from quantities.fuzz.ps import PS
+from quantities.fuzz.q import Q
+from quantities.fuzz.r import R
+from quantities.fuzz.velvet import VELVET
 from shadefit.figures.curves import draw_curves
 from shadefit.figures.maps import draw_errors, draw_surfaces
 from shadefit.figures.picture import Picture

@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d import Axes3D
 
 from coefficients.catalogue import resolve
 from coefficients.exported_code import operations_of
-from quantities.fuzz import PS
+from quantities.fuzz.ps import PS
 from shadefit.figures.style import ERRORS, FIBRE, VALUES, space
 from shadefit.figures.values import compared_values, error_text, hints_of, label_of, mesh
 

@@ -10,8 +10,8 @@ from coefficients.catalogue import AS_PRINTED, Entry, resolve
 from coefficients.exported_code import exported_values
 from fitting.points.grids import trapezoid_grid
 from fitting.solvers.separable import Separable
-from quantities.fuzz import PS
 from quantities.fuzz.lights import light_directions
+from quantities.fuzz.ps import PS
 from shadefit.figures.style import ERRORS
 from shadefit.figures.values import axis_hints, exact, mesh, points_along
 

@@ -13,7 +13,10 @@ from jax import Array
 import integrals
 from coefficients.catalogue import Entry, entries, published, refitted
 from quantities import Problem
-from quantities.fuzz import PS, G, Q, R
+from quantities.fuzz.g import G
+from quantities.fuzz.ps import PS
+from quantities.fuzz.q import Q
+from quantities.fuzz.r import R
 from shading.fuzz.lit_cone import scattered_fraction
 
 

@@ -10,8 +10,7 @@ from coefficients.code_options import CodeOptions, require_use, shaped
 from coefficients.exported_code import source_file, trial_of
 from programs import check, evaluate, toolchain, trace, write_source
 from programs.toolchains import verification
-from quantities.microfacet import SAMPLERS
-from quantities.microfacet.samplers import LEAST_ALPHA
+from quantities.microfacet.samplers import LEAST_ALPHA, SAMPLERS
 from tests.shading.microfacets import SAMPLERS as DRAWN
 from tests.shading.microfacets import areas, distribution, view_of
 

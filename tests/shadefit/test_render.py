@@ -18,7 +18,10 @@ import integrals
 from coefficients.catalogue import entries
 from coefficients.exported_code import exported_values
 from coefficients.textures.exr import write_exr
-from quantities.fuzz import PS, G, Q, R
+from quantities.fuzz.g import G
+from quantities.fuzz.ps import PS
+from quantities.fuzz.q import Q
+from quantities.fuzz.r import R
 from shadefit import images
 from shadefit.cli import main
 from shadefit.commands.render import run
