@@ -156,11 +156,14 @@ class Search:
 
         A table is not believed: if it states an error that is not its own, its form is fitted anew.
         """
-        read = [self._read_before(form) for form in forms]
-        kept = [(form, table) for form, table in zip(forms, read, strict=True) if table is not None]
-        tables = [(form.fitted(np.array(table.coefficients)), table) for form, table in kept]
-        wrong = iter(misstatements(self.owner.reference, tables))
-        return [None if table is None or next(wrong) is not None else table for table in read]
+        tables = [self._read_before(form) for form in forms]
+        stated = [
+            (form.fitted(np.array(table.coefficients)), table)
+            for form, table in zip(forms, tables, strict=True)
+            if table is not None
+        ]
+        wrong = iter(misstatements(self.owner.reference, stated))
+        return [None if table is None or next(wrong) is not None else table for table in tables]
 
     def _read_before(self, form: Form) -> Table | None:
         path = self.out / f"{self.name_of(form)}.json"

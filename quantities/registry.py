@@ -25,7 +25,7 @@ _LOBES = ("quantities.skin.lobes", "LOBE_QUANTITIES")
 _BANDS = ("quantities.skin.bands", "BAND_QUANTITIES")
 # The built-in quantities by name, in the order in which they are listed: the module that declares
 # each, and the name there of the quantity, or of several quantities.
-_BUILT_IN = {
+_DECLARED_IN = {
     "ps": ("quantities.fuzz.ps", "PS"),
     "g": ("quantities.fuzz.g", "G"),
     "q": ("quantities.fuzz.q", "Q"),
@@ -60,7 +60,7 @@ _FUNCTIONS = {
     "detail": ("quantities.detail", "OPERATORS"),
     "curvature": ("quantities.curvature", "CURVATURES"),
 }
-BUILT_IN = tuple(_BUILT_IN)
+BUILT_IN = tuple(_DECLARED_IN)
 # Those that users and installed packages declared.
 _REGISTERED: dict[str, Problem] = {}
 
@@ -94,7 +94,7 @@ def problem(name: str) -> Problem:
 
     Raises ValueError if there is none.
     """
-    if name in _BUILT_IN:
+    if name in _DECLARED_IN:
         return _built_in(name)
     if name not in _REGISTERED and name in installed():
         (point,) = list(entry_points(group=GROUP, name=name))[:1]
@@ -115,10 +115,10 @@ def installed() -> list[str]:
 
 def register(new: Problem) -> Problem:
     """Add a quantity and return it. Raises ValueError if another quantity has its name."""
-    known = _built_in(new.name) if new.name in _BUILT_IN else _REGISTERED.get(new.name, new)
+    known = _built_in(new.name) if new.name in _DECLARED_IN else _REGISTERED.get(new.name, new)
     if known is not new:
         raise ValueError(f"a quantity is called {new.name!r} already: allowed is another name")
-    if new.name not in _BUILT_IN:
+    if new.name not in _DECLARED_IN:
         _REGISTERED[new.name] = new
     return new
 
@@ -130,7 +130,7 @@ def unregister(name: str) -> None:
 
 @cache
 def _built_in(name: str) -> Problem:
-    module, constant = _BUILT_IN[name]
+    module, constant = _DECLARED_IN[name]
     found = getattr(import_module(module), constant)
     every = found if isinstance(found, Sequence) else [found]
     return next(each for each in every if each.name == name)

@@ -17,7 +17,7 @@ from quantities.problem import ExactCode, Problem
 from shading import AMBIENT_MODELS, direction, fiber_direction, harmonics
 from shading.fuzz.cone_lights import LEAST_ALPHA
 
-# The models that are exported, as far as `shading` has them, from cheap to precise
+# The models of `AMBIENT_MODELS` that are exported, from cheap to precise
 EXPORTED = ("talk", "cheap", "recommended", "best")
 # Below this v·n, rounding of the vectors moves cosines by a large part of themselves.
 _LARGEST_ANGLE = float(np.arccos(0.02))
@@ -115,4 +115,4 @@ _REMARK = (
 @functools.lru_cache(maxsize=1)
 def ambient_problems() -> dict[str, Problem]:
     """Return the exported models by name."""
-    return {name: _problem(name) for name in EXPORTED if name in AMBIENT_MODELS}
+    return {name: _problem(name) for name in EXPORTED}

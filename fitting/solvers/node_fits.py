@@ -118,8 +118,8 @@ class Nodes:
             t = slice(left, min(left + width, len(self.seconds)))
             for top in range(0, len(self.firsts), height):
                 a = slice(top, min(top + height, len(self.firsts)))
-                firsts = _filled(self.firsts[a], 0, height)
-                yield a, t, firsts, _filled(self.seconds[t], 0, width)
+                firsts = _filled(self.firsts[a], height)
+                yield a, t, firsts, _filled(self.seconds[t], width)
 
 
 def _inputs(form: Form, node: Array, inner: Array) -> tuple[Array, ...]:
@@ -184,7 +184,6 @@ _compared = jit_for_few_calls(_differences, static=(0, 1))
 _compared_often = jax.jit(_differences, static_argnums=(0, 1))
 
 
-def _filled(values: np.ndarray, axis: int, count: int) -> np.ndarray:
-    """Repeat the last element along an axis until there are `count`."""
-    missing = count - values.shape[axis]
-    return np.concatenate([values, np.repeat(values.take([-1], axis), missing, axis)], axis)
+def _filled(nodes: np.ndarray, count: int) -> np.ndarray:
+    """Repeat the last node until there are `count`."""
+    return np.append(nodes, np.repeat(nodes[-1:], count - len(nodes)))

@@ -1,4 +1,4 @@
-"""Primitives that only move the elements of arrays, in NumPy.
+"""Primitives that only move the elements of arrays, in NumPy. JAX itself runs the few others.
 
 JAX would compile each of them for each shape, which takes longer than a whole trace without it. The
 elements may be numbers or, in arrays of dtype object, operands of a program.

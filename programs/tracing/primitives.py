@@ -89,7 +89,7 @@ _REDUCTIONS = {
 
 # Primitives that only move elements -> positions of the operands that hold the elements; () means
 # all operands. The other operands are indices, which must be constants.
-_MOVES: dict[str, tuple[int, ...]] = {
+_MOVED_OPERANDS: dict[str, tuple[int, ...]] = {
     "broadcast_in_dim": (),
     "concatenate": (),
     "dynamic_slice": (0,),
@@ -110,7 +110,7 @@ _MOVES: dict[str, tuple[int, ...]] = {
 
 def writable_primitives() -> str:
     """List the primitives that can be translated, for error messages."""
-    names = {*ELEMENTWISE, *_REDUCTIONS, *_MOVES, *CALLS}
+    names = {*ELEMENTWISE, *_REDUCTIONS, *_MOVED_OPERANDS, *CALLS}
     names |= {"convert_element_type", "dot_general", "integer_pow", "scan"}
     return ", ".join(sorted(names))
 
@@ -124,7 +124,7 @@ def apply_primitive(builder: Builder, equation: JaxprEqn, operands: list[Any]) -
     """
     primitive, params = equation.primitive.name, equation.params
     _require_reals(equation)
-    if primitive in _MOVES:
+    if primitive in _MOVED_OPERANDS:
         return _move(equation, operands)
     operands = [_as_operands(operand) for operand in operands]
     if primitive == "convert_element_type":
@@ -186,7 +186,7 @@ def evaluate_primitive(equation: JaxprEqn, operands: list[Any]) -> list[np.ndarr
 
 
 def _move(equation: JaxprEqn, operands: list[Any]) -> list[Any]:
-    positions = _MOVES[equation.primitive.name] or range(len(operands))
+    positions = _MOVED_OPERANDS[equation.primitive.name] or range(len(operands))
     # Number the elements and let the primitive move the numbers: they show where each element goes.
     pool: list[Operand] = []
     arguments = list(operands)
@@ -229,7 +229,7 @@ def _as_operands(array: Any) -> Any:
 
 def _require_reals(equation: JaxprEqn) -> None:
     # Exported code has no integers, so integers may only be moved, selected and converted.
-    whole = equation.primitive.name in ("select_n", "convert_element_type", *_MOVES)
+    whole = equation.primitive.name in ("select_n", "convert_element_type", *_MOVED_OPERANDS)
     for variable in equation.outvars:
         dtype = _dtype(variable)
         if not (dtype in (np.float64, np.bool_) or (whole and dtype.kind in "iu")):

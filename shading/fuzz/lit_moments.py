@@ -69,7 +69,7 @@ def lit_moments(
     this true after rounding.
     """
     # notation: as above, with delta = Δ, coeff_b = B, tau = τ, level = λσ² + m, rise = λ + c,
-    # lean = λa + b, weight = the factor of W in K.
+    # lean = λa + b.
     cone = lit_cone(
         cos_vn,
         cos_vt,
