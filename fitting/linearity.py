@@ -43,6 +43,14 @@ class LinearParts:
         """Whether the denominator has no coefficient."""
         return not np.any(self.b)
 
+    def some(self, points: np.ndarray) -> "LinearParts":
+        """Return the parts at some of the points, by their numbers or a mask."""
+        return LinearParts(self.a0[points], self.a[points], self.b0[points], self.b[points])
+
+    def values(self, c: np.ndarray) -> np.ndarray:
+        """Return the values (n,) for coefficients c."""
+        return (self.a0 + self.a @ c) / (self.b0 + self.b @ c)
+
     def values_and_slopes(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the values (n,) for coefficients c, and their derivatives (n, coefficients)."""
         below = self.b0 + self.b @ c

@@ -3,12 +3,14 @@
 The constraints are that none of the form's margins (`Proofs.margins`) is negative. They are affine
 functions of the coefficients. So the coefficients with an error of at most t that obey them are a
 convex set, and a sequence of linear programs finds the least t (differential correction, as in
-`minimax`). The programs have some of the points; those where their result is worst are added.
+`minimax`). A program has only some of the points and margins. Where its result is worst, points and
+margins are added, and the next program is solved.
 """
 
 from dataclasses import dataclass, replace
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from fitting.form import Form
@@ -30,14 +32,19 @@ _AFFINE = 1e-9
 class WithinMargins:
     """The solver with its tuning constants.
 
-    * `room`: at the points of a program no margin is less than this, so that none is negative
-      between them. `most` is the largest size of a coefficient: without it, large denominators
-      would make a program unbounded.
-    * `first`: a program has every so many-th point at first. `nodes`: the margins are looked at on
-      a grid of so many nodes an axis, and every so many-th of `coarse` is there at first.
-    * `programs`, `worthwhile`: at most so many programs follow each other, while each lowers the
-      error by this fraction. `exchanges`, `added`: at most so many times, so many points are added.
-    * `settled`: the largest error may exceed that at the points by this fraction.
+    * `room`: the least margin at the nodes of a program. It keeps margins between them from being
+      negative.
+    * `most`: the largest size of a coefficient. Without it, large denominators would make a program
+      unbounded.
+    * `first`: at first, one of `first` points is in the programs.
+    * `nodes`: margins are computed on a grid with this many nodes an axis.
+    * `coarse`: at first, one of `coarse` margins of the grid is in the programs.
+    * `programs`, `worthwhile`: at most `programs` follow each other, as long as each lowers the
+      largest error by the fraction `worthwhile`.
+    * `exchanges`, `added`: at most `exchanges` times, up to `added` points with the largest errors
+      outside the sample are added to it.
+    * `settled`: the exchange ends when their largest error exceeds that of the sample by at most
+      this fraction.
     * `turns`: the number of groups in which the coefficients are rounded.
     """
 
@@ -73,8 +80,8 @@ class WithinMargins:
         progress(f"exact {form.reference.symbol} where {form.name} is fitted")
         sample = sample_of(form, goal, measure)
         progress(f"{form.name}: least largest error within its margins")
-        rooms = _rooms(form, self.nodes)
-        kept = np.zeros(len(rooms[0]), bool)
+        margins = _margins(form, self.nodes)
+        kept = np.zeros(len(margins.constants), bool)
         kept[:: self.coarse] = True
         chosen = np.zeros(len(sample.points), bool)
         chosen[:: self.first] = True
@@ -84,11 +91,11 @@ class WithinMargins:
             parts = _parts(form, sample.points)
             while True:
                 z = self._least(
-                    _some(parts, chosen), sample.exact[chosen], _rows(rooms, kept), z, free
+                    parts.some(chosen), sample.exact[chosen], margins.some(kept), z, free
                 )
-                size = np.abs(_errors(parts, sample.exact, z))
+                size = np.abs(parts.values(z) - sample.exact)
                 worse = size > size[chosen].max() * (1 + self.settled)
-                short = rooms[0] + rooms[1] @ z < self.room / 2
+                short = margins.values(z) < self.room / 2
                 if not (worse.any() or short.any()):
                     break
                 chosen |= worse & (size >= np.sort(size)[-self.added :].min())
@@ -105,11 +112,13 @@ class WithinMargins:
             words += f"; the largest error did not settle in {self.exchanges} exchanges"
         if goal.rounding != "none":
             progress(f"{form.name}: rounding to {goal.rounding}")
-            parts = _some(_parts(form, sample.points), chosen)
-            z = self._rounded(parts, sample.exact[chosen], _rows(rooms, kept), z, goal)
+            parts = _parts(form, sample.points).some(chosen)
+            z = self._rounded(parts, sample.exact[chosen], margins.some(kept), z, goal)
         return ScatteredFit(z, sample, settled, words)
 
-    def _rounded(self, parts, exact, rooms, z, goal: Goal) -> np.ndarray:
+    def _rounded(
+        self, parts: LinearParts, exact: np.ndarray, margins: "_Margins", z: np.ndarray, goal: Goal
+    ) -> np.ndarray:
         """Round the coefficients in groups, those that change the values most first."""
         dtype = PRECISIONS[goal.rounding]
         order = np.argsort(-np.abs(z) * np.abs(parts.a - exact[:, None] * parts.b).max(axis=0))
@@ -118,10 +127,17 @@ class WithinMargins:
             z[group] = z[group].astype(dtype).astype(float)
             free[group] = False
             if free.any():
-                z = self._least(parts, exact, rooms, z, free)
+                z = self._least(parts, exact, margins, z, free)
         return z
 
-    def _least(self, parts: LinearParts, exact, rooms, z, free) -> np.ndarray:
+    def _least(
+        self,
+        parts: LinearParts,
+        exact: np.ndarray,
+        margins: "_Margins",
+        z: np.ndarray,
+        free: np.ndarray,
+    ) -> np.ndarray:
         """Return the coefficients with the least largest error; those not free keep their values.
 
         The programs begin with the error of `z`, which need not obey the constraints; their results
@@ -129,9 +145,9 @@ class WithinMargins:
         """
         held = np.where(free, 0.0, z)
         a0, b0 = parts.a0 + parts.a @ held, parts.b0 + parts.b @ held
-        a, b, matrix = parts.a[:, free], parts.b[:, free], rooms[1][:, free]
+        a, b, matrix = parts.a[:, free], parts.b[:, free], margins.slopes[:, free]
         above, slopes = a0 - exact * b0, a - exact[:, None] * b
-        base = rooms[0] + rooms[1] @ held
+        base = margins.values(held)
         start = z[free]
         below = b0 + b @ start
         size, best = np.abs((above + slopes @ start) / below).max(), None
@@ -164,6 +180,20 @@ class WithinMargins:
         return whole
 
 
+@dataclass(frozen=True)
+class _Margins:
+    """Margins as affine functions of the coefficients: constants (n,) and slopes (n, size)."""
+
+    constants: np.ndarray
+    slopes: np.ndarray
+
+    def some(self, chosen: np.ndarray) -> "_Margins":
+        return _Margins(self.constants[chosen], self.slopes[chosen])
+
+    def values(self, z: np.ndarray) -> np.ndarray:
+        return self.constants + self.slopes @ z
+
+
 def _parts(form: Form, points: np.ndarray) -> LinearParts:
     found = linear_parts(form, points)
     if found is None:
@@ -171,20 +201,8 @@ def _parts(form: Form, points: np.ndarray) -> LinearParts:
     return found
 
 
-def _some(parts: LinearParts, chosen: np.ndarray) -> LinearParts:
-    return LinearParts(parts.a0[chosen], parts.a[chosen], parts.b0[chosen], parts.b[chosen])
-
-
-def _rows(rooms: tuple[np.ndarray, np.ndarray], kept: np.ndarray):
-    return rooms[0][kept], rooms[1][kept]
-
-
-def _errors(parts: LinearParts, exact: np.ndarray, z: np.ndarray) -> np.ndarray:
-    return (parts.a0 + parts.a @ z) / (parts.b0 + parts.b @ z) - exact
-
-
-def _rooms(form: Form, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the margins on a grid as affine functions: constants (n,) and slopes (n, size)."""
+def _margins(form: Form, nodes: int) -> _Margins:
+    """Return the margins on a grid with so many nodes an axis."""
     margins = form.proofs.margins
     if margins is None:
         raise ValueError(f"{form.name} has no margins")
@@ -195,7 +213,7 @@ def _rooms(form: Form, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     given = np.concatenate([np.zeros((1, form.size)), np.eye(form.size), probe[None]])
 
     def at(c, point):
-        return jax.numpy.stack(margins(c, *point))
+        return jnp.stack(margins(c, *point))
 
     over = jax.jit(jax.vmap(jax.vmap(at, (None, 0)), (0, None)))
     values = np.asarray(over(given, points))
@@ -205,4 +223,4 @@ def _rooms(form: Form, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     apart = np.abs(flat[0] + slopes @ probe - flat[-1]).max()
     if not apart <= _AFFINE * np.abs(flat[-1]).max():
         raise ValueError(f"{form.name}: its margins are not affine in the coefficients")
-    return flat[0], slopes
+    return _Margins(flat[0], slopes)
