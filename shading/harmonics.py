@@ -16,6 +16,9 @@ from shading.types import Vector
 
 Coefficients = Float[Array | np.ndarray, "9 *channels"]
 
+# The factors of Y₀₀, of order 1, of order 2, and of Y₂₀
+FLAT, FIRST = float(np.sqrt(1 / (4 * np.pi))), float(np.sqrt(3 / (4 * np.pi)))
+SECOND, ZONAL = float(np.sqrt(15 / (4 * np.pi))), float(np.sqrt(5 / (16 * np.pi)))
 _BANDS = np.array([0, 1, 1, 1, 2, 2, 2, 2, 2])
 # For l = 0, 1, 2: 2π ∫₀¹ P_l(x) x dx (irradiance) and ∫₀¹ P_l(x) dx (mean radiance).
 _COSINE = np.array([np.pi, 2 * np.pi / 3, np.pi / 4])[_BANDS]
@@ -25,16 +28,13 @@ _MEAN = np.array([1.0, 0.5, 0.0])[_BANDS]
 def harmonics(direction: Vector) -> Array:
     """Return Y₀₀ … Y₂₂ (9,) of a unit vector. They are orthonormal over the sphere."""
     x, y, z = jnp.asarray(direction)
-    flat = jnp.full_like(z, np.sqrt(1 / (4 * np.pi)))
-    first = np.sqrt(3 / (4 * np.pi))
-    second = np.sqrt(15 / (4 * np.pi))
     return jnp.stack(
         [
-            flat,
-            *(first * y, first * z, first * x),
-            *(second * x * y, second * y * z),
-            np.sqrt(5 / (16 * np.pi)) * (3 * z * z - 1),
-            *(second * x * z, second * (x * x - y * y) / 2),
+            jnp.full_like(z, FLAT),
+            *(FIRST * y, FIRST * z, FIRST * x),
+            *(SECOND * x * y, SECOND * y * z),
+            ZONAL * (3 * z * z - 1),
+            *(SECOND * x * z, SECOND * (x * x - y * y) / 2),
         ]
     )
 

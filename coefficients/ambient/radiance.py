@@ -27,6 +27,7 @@ from shading import (
     light_weights,
 )
 from shading.fuzz.cone_lights import LEAST_ALPHA, LEAST_COSINE
+from shading.harmonics import FIRST, FLAT, SECOND, ZONAL
 
 # The largest density of the tables of G and Q
 LARGEST_DENSITY = 0.5
@@ -102,14 +103,8 @@ class _Surface:
         return [ambient_attenuation(cos_v, thickness, each, q, r) for each in albedo]
 
 
-# The factors of the harmonics of a cosine lobe, π, 2π/3 and π/4, over π, times the constants of
-# Y₀₀, of order 1, of order 2, and of Y₂₀, as in `shading.harmonics`
-_RECEIVED = (
-    float(np.sqrt(1 / (4 * np.pi))),
-    float(2 / 3 * np.sqrt(3 / (4 * np.pi))),
-    float(1 / 4 * np.sqrt(15 / (4 * np.pi))),
-    float(1 / 4 * np.sqrt(5 / (16 * np.pi))),
-)
+# The factors of the bands of a cosine lobe, π, 2π/3 and π/4, over π, times those of the harmonics
+_RECEIVED = (FLAT, 2 / 3 * FIRST, 1 / 4 * SECOND, 1 / 4 * ZONAL)
 
 
 def _surface(name: str, normal, view, fiber, alpha, density) -> _Surface:

@@ -10,21 +10,19 @@ import numpy as np
 from jax import Array
 from jaxtyping import Float
 
-Weights = Float[Array | np.ndarray, "n 9"]
+from shading.harmonics import FIRST, FLAT, SECOND, ZONAL
 
-# The factors of the harmonics of order 0, 1 and 2, and of Y₂₀, as in `shading.harmonics`.
-_FLAT, _FIRST = np.sqrt(1 / (4 * np.pi)), np.sqrt(3 / (4 * np.pi))
-_SECOND, _ZONAL = np.sqrt(15 / (4 * np.pi)), np.sqrt(5 / (16 * np.pi))
+Weights = Float[Array | np.ndarray, "n 9"]
 
 
 def moments_of_weights(weights: Weights) -> tuple[Array, Array, Array]:
     """Return M0 (n,), R (n, 3) and M2/M0 (n, 3, 3) from weights (n, 9) of the nine harmonics."""
     weights = jnp.asarray(weights)
-    total = weights[:, 0] / _FLAT
+    total = weights[:, 0] / FLAT
     unit = weights / total[:, None]
-    mean = jnp.stack([unit[:, 3], unit[:, 1], unit[:, 2]], axis=1) / _FIRST
-    zz = (unit[:, 6] / _ZONAL + 1) / 3
-    xy, yz, xz, gap = (unit[:, i] / _SECOND for i in (4, 5, 7, 8))
+    mean = jnp.stack([unit[:, 3], unit[:, 1], unit[:, 2]], axis=1) / FIRST
+    zz = (unit[:, 6] / ZONAL + 1) / 3
+    xy, yz, xz, gap = (unit[:, i] / SECOND for i in (4, 5, 7, 8))
     xx, yy = (1 - zz) / 2 + gap, (1 - zz) / 2 - gap
     square = jnp.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
     return total, mean, square

@@ -10,14 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from shading.fuzz.ambient import LIT_LAYER_CONSTANTS
-from shading.fuzz.cheap_lights import Constants, cheap_directed_light, cheap_light, talk_light
+from shading.fuzz.cheap_lights import cheap_directed_light, cheap_light, talk_light
 from shading.fuzz.cone_lights import (
     best_light,
     mean_cosine_light,
     mean_direction_light,
     recommended_light,
 )
-from shading.fuzz.layer_light import LayerLight, LayerView
+from shading.fuzz.layer_light import Constants, LayerLight, LayerView
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from shading.fuzz.ambient import corrected_layer
-from shading.fuzz.layer_light import LayerLight, LayerView
-from shading.types import Scalar
-
-Constants = tuple[Scalar, ...]
+from shading.fuzz.layer_light import Constants, LayerLight, LayerView
 
 
 def talk_light(view: LayerView, _: Constants = ()) -> LayerLight:

@@ -13,11 +13,9 @@ import jax.numpy as jnp
 from jax import Array
 
 from shading.fuzz.ambient import lit_by_constants
-from shading.fuzz.layer_light import LayerLight, LayerView, length_squared
+from shading.fuzz.layer_light import Constants, LayerLight, LayerView, length_squared
 from shading.fuzz.lit_moments import LitMoments, lit_moments
 from shading.types import Scalar
-
-Constants = tuple[Scalar, ...]
 
 # The least α, v·n and d. At v·n = 0 the kernel of the layer has no limit for d → 0.
 LEAST_ALPHA, LEAST_COSINE, LEAST_DENSITY = 0.05, 1e-3, 1e-3

@@ -10,11 +10,13 @@ Every function takes scalars, which can be printed as shader code. docs/ambient-
 from typing import NamedTuple
 
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
-from shading.harmonics import Coefficients
+from shading.harmonics import FIRST, FLAT, SECOND, ZONAL, Coefficients
 from shading.types import Scalar, Vector
+
+# The constants of an ambient model
+Constants = tuple[Scalar, ...]
 
 
 class LayerView(NamedTuple):
@@ -95,8 +97,8 @@ def light_weights(light: LayerLight, normal: Vector, view: Vector, fiber: Vector
     light is given. The weights are M0 times the mean harmonics of the directions of the light.
     """
     mean = mean_direction(light, normal, view, fiber)
-    first = (_FIRST * light.level) * mean
-    flat = jnp.asarray(_FLAT * light.level)
+    first = (FIRST * light.level) * mean
+    flat = jnp.asarray(FLAT * light.level)
     pairs = [
         (left, right)
         for left, terms in (
@@ -127,13 +129,13 @@ def light_weights(light: LayerLight, normal: Vector, view: Vector, fiber: Vector
         return sum(parts[1:], parts[0])
 
     xx, yy, zz = entry(0, 0), entry(1, 1), entry(2, 2)
-    half = (_SECOND / 2) * light.level
+    half = (SECOND / 2) * light.level
     return jnp.stack(
         [
             flat,
             *(first[1], first[2], first[0]),
             *(half * entry(0, 1), half * entry(1, 2)),
-            (_ZONAL * light.level) * (2 * zz - xx - yy),
+            (ZONAL * light.level) * (2 * zz - xx - yy),
             *(half * entry(0, 2), half * (xx - yy)),
         ]
     )
@@ -150,11 +152,6 @@ def layer_radiance(
     """
     weights = light_weights(light, normal, view, fiber)
     return jnp.maximum(weights @ jnp.asarray(coefficients), 0.0)
-
-
-# The constants of Y₀₀, of order 1, of order 2, and of Y₂₀, as in `shading.harmonics`.
-_FLAT, _FIRST = float(np.sqrt(1 / (4 * np.pi))), float(np.sqrt(3 / (4 * np.pi)))
-_SECOND, _ZONAL = float(np.sqrt(15 / (4 * np.pi))), float(np.sqrt(5 / (16 * np.pi)))
 
 
 def _combined(terms: tuple[tuple[Scalar, Vector], ...]) -> Array | None:
