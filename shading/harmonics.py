@@ -20,6 +20,12 @@ Coefficients = Float[Array | np.ndarray, "9 *channels"]
 FLAT, FIRST = float(np.sqrt(1 / (4 * np.pi))), float(np.sqrt(3 / (4 * np.pi)))
 SECOND, ZONAL = float(np.sqrt(15 / (4 * np.pi))), float(np.sqrt(5 / (16 * np.pi)))
 _BANDS = np.array([0, 1, 1, 1, 2, 2, 2, 2, 2])
+# The coefficients of light with the radiance one everywhere
+UNIFORM = np.sqrt(4 * np.pi) * (np.arange(9) == 0)
+# The coefficients of the broad lobe ((1 + ω·s)/2)² = 1/3 + (ω·s)/2 + P₂(ω·s)/6 about a unit vector
+# s are these times the harmonics at s, by the addition theorem of spherical harmonics. It needs no
+# harmonics beyond order 2, and is never negative.
+LOBE = np.array([1 / 3, 1 / 2, 1 / 6])[_BANDS] * 4 * np.pi / (2 * _BANDS + 1)
 # For l = 0, 1, 2: 2π ∫₀¹ P_l(x) x dx (irradiance) and ∫₀¹ P_l(x) dx (mean radiance).
 _COSINE = np.array([np.pi, 2 * np.pi / 3, np.pi / 4])[_BANDS]
 _MEAN = np.array([1.0, 0.5, 0.0])[_BANDS]

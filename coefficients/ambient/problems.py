@@ -16,6 +16,7 @@ from quantities.calling_convention import CallingConvention
 from quantities.problem import ExactCode, Problem
 from shading import AMBIENT_MODELS, direction, fiber_direction, harmonics
 from shading.fuzz.cone_lights import LEAST_ALPHA
+from shading.harmonics import LOBE, UNIFORM
 
 # The models of `AMBIENT_MODELS` that are exported, from cheap to precise
 EXPORTED = ("talk", "cheap", "recommended", "best")
@@ -47,17 +48,11 @@ def _arguments(point: Array) -> Array:
     vectors = jnp.concatenate([local, fiber_direction(theta_f)[None]]) @ _turned(turn).T
     sine = jnp.sqrt(1 - height * height)
     axis = jnp.stack([sine * jnp.cos(azimuth), sine * jnp.sin(azimuth), height])
-    red, blue = _lobe(axis), _lobe(-axis)
-    green = (red + blue) / 2 + 0.5 * jnp.zeros(9).at[0].set(np.sqrt(4 * np.pi))
+    red, blue = LOBE * harmonics(axis), LOBE * harmonics(-axis)
+    green = (red + blue) / 2 + 0.5 * UNIFORM
     light = jnp.stack([red, green, blue], axis=1)
     colours = jnp.array([*_FIBER_ALBEDO, *_BASE_ALBEDO])
     return jnp.concatenate([vectors.ravel(), jnp.stack([alpha, density]), light.ravel(), colours])
-
-
-def _lobe(axis: Array) -> Array:
-    """Return the harmonics (9,) of the light ((1 + ω·s)/2)², by the addition theorem."""
-    bands = np.repeat([4 / 3, 2 / 3, 2 / 15], [1, 3, 5]) * np.pi
-    return jnp.asarray(bands) * harmonics(axis)
 
 
 def _turned(angle: Array) -> Array:

@@ -2,8 +2,8 @@
 
 The points are Sobol' points of this module. No point at which docs/brdf.md judges the models is
 among them. Each model is fitted to the radiance in twelve lights, relative to the mean radiance in
-each: a uniform light, and eleven broad lobes ((1 + ω·s)/2)², which need no harmonics beyond order
-2. `python -m quantities.fuzz.ambient_fit` fits all models and prints the constants.
+each: a uniform light, and eleven broad lobes (`shading.harmonics.LOBE`).
+`python -m quantities.fuzz.ambient_fit` fits all models and prints the constants.
 """
 
 import functools
@@ -29,6 +29,7 @@ from shading import (
     harmonics,
     light_weights,
 )
+from shading.harmonics import LOBE, UNIFORM
 
 # What the points fill evenly; the density evenly in its logarithm. The fibre leans to azimuth 0.
 AXES = (
@@ -115,13 +116,8 @@ def _exact_at(point: Array):
 
 def fitting_lights() -> np.ndarray:
     """Return the harmonics (9, 12) of the lights that models are fitted to."""
-    uniform = np.zeros(9)
-    uniform[0] = np.sqrt(4 * np.pi)
-    # (1/3, 1/2, 1/6) are the parts of ((1 + x)/2)² along Legendre's P₀, P₁ and P₂.
-    bands = np.array([1, 3, 3, 3, 5, 5, 5, 5, 5])
-    parts = np.array([1 / 3, *[1 / 2] * 3, *[1 / 6] * 5]) * 4 * np.pi / bands
     axes = np.array(LOBES) / np.linalg.norm(LOBES, axis=1)[:, None]
-    return np.column_stack([uniform, (parts * np.asarray(jax.vmap(harmonics)(axes))).T])
+    return np.column_stack([UNIFORM, (LOBE * np.asarray(jax.vmap(harmonics)(axes))).T])
 
 
 def model_weights(model: AmbientModel, at: Samples, constants=None) -> Array:

@@ -12,7 +12,6 @@ from scipy.interpolate import RectBivariateSpline
 
 from coefficients.ambient import tables
 from integrals.fuzz.radiance import base_response
-from shadefit.ambient.lights import LOBE
 from shadefit.ambient.models import EXPORTED, model_weights, views
 from shadefit.ambient.radiances import HEMISPHERE_RULE, layer_responses
 from shadefit.render.fibers import azimuths
@@ -20,6 +19,7 @@ from shadefit.render.image import SAMPLES
 from shadefit.render.scenes import SCENES, Hits
 from shadefit.render.settings import Settings
 from shading import ambient_attenuation, escape, harmonics, roughness_from_spread
+from shading.harmonics import LOBE, UNIFORM
 
 SETTINGS = Settings(
     density=0.3, spread=0.1, tilt=float(np.radians(55)), fiber="#8fb4ff", base="#1b2a5c", size=210
@@ -34,7 +34,6 @@ _LEAST_COSINE = float(_ROOTS[0] ** 2)
 # The harmonics with an odd power of y change their sign with the azimuth.
 _ODD = (1, 4, 5)
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-_FLAT = np.sqrt(4 * np.pi)
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def _local_light(frames: np.ndarray) -> np.ndarray:
     axis = np.array(AXIS) / np.linalg.norm(AXIS)
     own = LOBE * np.asarray(jax.jit(jax.vmap(harmonics))(frames @ axis))
     key = own[..., None] * np.array(KEY)
-    key[:, 0] += _FLAT * np.array(REST)
+    key[:, 0] += UNIFORM[0] * np.array(REST)
     return key
 
 

@@ -8,12 +8,13 @@ import pytest
 from coefficients.catalogue import resolve
 from integrals.fuzz.radiance import layer_response
 from shadefit.ambient import cloth
-from shadefit.ambient.lights import LOBE, lights
+from shadefit.ambient.lights import lights
 from shadefit.ambient.models import CHOICES, EXACT, EXPORTED, model_rows, model_weights, views
 from shadefit.ambient.radiances import materials_and_views, radiances
 from shadefit.render.functions import EXACT as EXACT_FUNCTIONS
 from shadefit.render.functions import exported_functions
 from shading import AMBIENT_MODELS, harmonics
+from shading.harmonics import LOBE
 
 SOME = materials_and_views()[::97]
 
