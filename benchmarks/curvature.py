@@ -38,7 +38,8 @@ def main(count: int = 150, seed: int = 5) -> None:
         cells = [" ".join(f"{each:.3f}" for each in ratio) for ratio in ratios]
         print(f"{method:40s}", *(f"{cell:>20s}" for cell in cells))
     sphere = seen["sphere 10"]
-    wrong = np.abs(on_sphere(10.0, sphere) - sphere.values).max()
+    cosines = np.sum(sphere.normals * sphere.lights, axis=1)
+    wrong = np.abs(on_sphere(10.0, cosines) - sphere.values).max()
     print(f"brute force against the exact sphere: {wrong:.1e}")
     few = min(count, 30)
     for name, surface in SURFACES.items():

@@ -28,6 +28,13 @@ _SYMBOLS = ("1", "c", "c²", "c⁴", "q", "p")
 # The number of p among them, which alone may have no factor κ
 _P = 5
 MOST_BELOW = 4
+# What the arguments of `hyperbola_form` may be, for a `Family`
+ARGUMENTS = {
+    "narrow": "fraction",
+    "wide": "fraction",
+    "numerator": "exponents",
+    "below": range(MOST_BELOW + 1),
+}
 
 
 def _terms(c, numerator: Exponents) -> dict:

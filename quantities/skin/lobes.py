@@ -12,7 +12,7 @@ from quantities.plot_hints import AxisHint, PlotHints
 from quantities.problem import Problem
 from quantities.skin.hill import hill_form
 from quantities.skin.hyperbola_forms import (
-    MOST_BELOW,
+    ARGUMENTS,
     MOST_WIDTH,
     WIDE,
     candidates,
@@ -29,7 +29,6 @@ _WEIGHTS = {
 
 def _problem(reference: Reference) -> Problem:
     surface = reference.name.rpartition("-")[2]
-
     others = (hill_form(reference),) if surface == "sphere" else ()
 
     def made(**shape):
@@ -39,15 +38,7 @@ def _problem(reference: Reference) -> Problem:
         reference=reference,
         forms=(without_denominator(reference), *others),
         families={
-            "lobe-skin": Family(
-                made,
-                {
-                    "narrow": "fraction",
-                    "wide": WIDE,
-                    "numerator": "exponents",
-                    "below": range(MOST_BELOW + 1),
-                },
-            ),
+            "lobe-skin": Family(made, {**ARGUMENTS, "wide": WIDE}),
         },
         candidates=lambda _: candidates(reference),
         calling=CallingConvention(

@@ -9,7 +9,7 @@ from quantities.family import Family
 from quantities.plot_hints import AxisHint, PlotHints
 from quantities.problem import Problem
 from quantities.skin.hyperbola_forms import (
-    MOST_BELOW,
+    ARGUMENTS,
     candidates,
     hyperbola_form,
     without_denominator,
@@ -18,12 +18,6 @@ from quantities.skin.pesce import pesce_form
 from quantities.skin.rising_forms import rising_candidates, rising_form
 from quantities.skin.yeung import yeung_form
 
-_ARGUMENTS = {
-    "narrow": "fraction",
-    "wide": "fraction",
-    "numerator": "exponents",
-    "below": range(MOST_BELOW + 1),
-}
 _LARGEST_ERROR = {"red": 0.004, "green": 0.0006, "blue": 0.0002}
 
 
@@ -40,8 +34,8 @@ def _problem(reference: Reference) -> Problem:
         reference=reference,
         forms=(without_denominator(reference), pesce_form(reference), yeung_form(reference)),
         families={
-            "hyperbola-skin": Family(made, _ARGUMENTS),
-            "rising-skin": Family(rising, _ARGUMENTS),
+            "hyperbola-skin": Family(made, ARGUMENTS),
+            "rising-skin": Family(rising, ARGUMENTS),
         },
         candidates=lambda _: itertools.chain(candidates(reference), rising_candidates(reference)),
         calling=CallingConvention(

@@ -170,14 +170,12 @@ def shaded(name: str, seen: Lit) -> np.ndarray:
         "talk": seen.talk_tensors,
     }
     drifts = seen.drifts if source == "blurred" else np.zeros_like(seen.drifts)
-    return over_rows(_row(shader), tensors[source], drifts, seen.frames, seen.normals, seen.lights)[
-        0
-    ]
+    given = tensors[source], drifts, seen.frames, seen.normals, seen.lights
+    return over_rows(_row(shader), *given)[0]
 
 
-def on_sphere(radius: float, seen: Lit) -> np.ndarray:
-    """Return the exact light (n, channels) at the points of a sphere, by another method."""
-    cosines = np.sum(seen.normals * seen.lights, axis=1)
+def on_sphere(radius: float, cosines: np.ndarray) -> np.ndarray:
+    """Return the exact light (n, channels) at points of a sphere, from n·l (n,)."""
     return over_rows(_on_sphere, cosines, np.full(len(cosines), 1 / radius))[0]
 
 

@@ -16,6 +16,7 @@ from jaxtyping import Float
 
 from integrals.rules.interval import gauss_legendre
 from shadefit.curvature.gaussian_sums import in_plane
+from shadefit.curvature.smoothing import convex_tensors
 from shadefit.curvature.surfaces import (
     Ellipsoid,
     Finger,
@@ -90,12 +91,7 @@ def blurred(
     frames = np.broadcast_to(frame, (len(places), 2, 3))
     tensors = in_plane(matrices, normals, frames, np.broadcast_to(normal, places.shape))
     if convex:
-        middle, half = (tensors[:, 0] + tensors[:, 2]) / 2, (tensors[:, 0] - tensors[:, 2]) / 2
-        radius = np.hypot(half, tensors[:, 1])
-        upper, lower = np.maximum(middle + radius, 0), np.maximum(middle - radius, 0)
-        ratio = (upper - lower) / np.where(radius > 0, 2 * radius, 1.0)
-        mean, turned = (upper + lower) / 2, ratio * half
-        tensors = np.stack([mean + turned, ratio * tensors[:, 1], mean - turned], axis=1)
+        tensors = convex_tensors(tensors)
     return weight @ tensors, frame @ (weight @ normals) / width**2
 
 

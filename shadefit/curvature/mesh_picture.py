@@ -9,13 +9,11 @@ from matplotlib.figure import Figure
 
 from shadefit.curvature.meshes import Mesh
 from shadefit.curvature.raster import rasterise
-from shadefit.curvature.skin_light import LOOKS, Skin
+from shadefit.curvature.skin_light import ALBEDO, LOOKS, Skin
 from shadefit.figures.style import ERRORS, render
 from shadefit.figures.values import error_text, round_up
 from shadefit.render.srgb import to_srgb
 
-# The part of the light that skin returns, linear red, green and blue
-ALBEDO = np.array([0.80, 0.45, 0.32])
 LAMBERT, TABLE, FIT = "N·L", "LUT, κ along the light", "fit, equivalent cylinder"
 # Samples along an edge of a pixel, the part of the image that the mesh fills, the width of a panel
 # in inches, and the quantile at which colour scales end

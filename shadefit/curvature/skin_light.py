@@ -17,6 +17,7 @@ from coefficients.exported_code import exported_values
 from coefficients.lut import bake
 from coefficients.lut.texture import Lut
 from integrals.reference import restricted
+from integrals.skin.references import CHANNELS
 from quantities import problem
 from shadefit.curvature.blocks import over_rows
 from shadefit.curvature.meshes import Mesh
@@ -25,7 +26,8 @@ from shadefit.curvature.tensors import Curvature, frame_tensors, frames_of, spac
 from shading.curvature import along_light, drifted, effective, equivalent_cylinder, projected_light
 from shading.skin.profiles import SKIN
 
-CHANNELS = ("red", "green", "blue")
+# The part of the light that skin returns, linear red, green and blue
+ALBEDO = np.array([0.80, 0.45, 0.32])
 # Fits of 20 coefficients a channel, for curvature up to 0.5/mm
 FITS = tuple(f"best/skin-cylinder-{channel}-63" for channel in CHANNELS)
 # The size of the lookup table, and its largest curvature in 1/mm

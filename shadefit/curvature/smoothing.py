@@ -43,7 +43,12 @@ class _Distinct:
 
 def convex(found: Curvature) -> Curvature:
     """Return curvature whose concave parts are zero: eigenvalues below zero are clamped."""
-    return replace(found, tensors=over_rows(_convex, found.tensors)[0])
+    return replace(found, tensors=convex_tensors(found.tensors))
+
+
+def convex_tensors(tensors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
+    """Return tensors whose eigenvalues below zero are zero instead."""
+    return over_rows(_convex, tensors)[0]
 
 
 def smoothed(

@@ -3,19 +3,17 @@
 import functools
 from dataclasses import dataclass
 
-import jax.numpy as jnp
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from integrals.skin import sphere_scattering
 from shadefit.curvature import Mesh, curvature
-from shadefit.curvature.blocks import over_rows
+from shadefit.curvature.comparison import on_sphere
 from shadefit.curvature.diffusion import diffused, patch
 from shadefit.curvature.generators import finger, icosphere, torus
 from shadefit.curvature.raster import rasterise
-from shadefit.curvature.skin_light import LOOKS, skin_of
+from shadefit.curvature.skin_light import ALBEDO, LOOKS, skin_of
 from shadefit.curvature.smoothing import DRIFT_WIDTH
 from shadefit.curvature.surfaces import Ellipsoid, Finger, Surface, Torus
 from shadefit.figures.picture import Picture
@@ -23,8 +21,6 @@ from shadefit.figures.style import ERRORS
 from shadefit.render.srgb import to_srgb
 from shading.skin.profiles import SKIN
 
-# The part of the light that skin returns, linear red, green and blue
-ALBEDO = np.array([0.80, 0.45, 0.32])
 # Pixels for a mm, the nodes of the brute force, whose error is then below 1.3e-4, and what is shown
 # of the scene in mm
 _SCALE, _NODES, _SHOWN = 2.25, 3, (44.0, 36.0)
@@ -144,12 +140,8 @@ def _truth(surface: Surface, points: np.ndarray, light: np.ndarray, nodes: int) 
     if isinstance(surface, Ellipsoid) and len(set(surface.axes)) == 1:
         radius = surface.axes[0]
         cosines = points @ light / np.linalg.norm(points, axis=1)
-        return over_rows(_on_sphere, cosines, np.full(len(cosines), 1 / radius))[0]
+        return on_sphere(radius, cosines)
     return np.array([diffused(patch(surface, p, nodes), p, light, SKIN) for p in points])
-
-
-def _on_sphere(cosine, kappa):
-    return (sphere_scattering(SKIN, jnp.arccos(jnp.clip(cosine, -1, 1)), kappa),)
 
 
 def _turned(about_z: float, about_x: float) -> np.ndarray:

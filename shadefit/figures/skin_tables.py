@@ -3,6 +3,7 @@
 import functools
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from matplotlib.figure import Figure
@@ -11,12 +12,12 @@ from coefficients.catalogue import resolve
 from fitting import form_values
 from integrals.skin import cylinder_scattering, sphere_scattering
 from quantities.skin.hyperbola_forms import MOST_CURVATURE
+from shadefit.curvature.skin_light import FITS
 from shadefit.figures.picture import Picture
 from shadefit.render.srgb import to_srgb
 from shading.skin import SKIN
 
 _COLUMNS, _ROWS = 96, 48
-_CHANNELS = ("red", "green", "blue")
 # The error of a channel that is drawn as full colour
 _FULL = 0.001
 
@@ -47,7 +48,7 @@ def _grid() -> np.ndarray:
 @functools.partial(jax.jit, static_argnums=0)
 def _exact(surface: str, points: Array) -> Array:
     def at(point):
-        theta = jax.numpy.arccos(point[0])
+        theta = jnp.arccos(point[0])
         if surface == "sphere":
             return sphere_scattering(SKIN, theta, point[1])
         return cylinder_scattering(SKIN, theta, point[1], radial=surface == "radial")
@@ -58,15 +59,12 @@ def _exact(surface: str, points: Array) -> Array:
 def tables_of_skin() -> dict[str, np.ndarray]:
     """Return D (rows, columns, channels): on a ring by both profiles, on a sphere, and fitted."""
     points = _grid().reshape(-1, 2)
-    shape = (_ROWS, _COLUMNS, len(_CHANNELS))
+    shape = (_ROWS, _COLUMNS, len(FITS))
     found = {
         name: np.asarray(_exact(name, points)).reshape(shape)
         for name in ("linear", "radial", "sphere")
     }
-    fits = [
-        form_values(resolve(f"best/skin-cylinder-{channel}-63").require_fitted(), points)
-        for channel in _CHANNELS
-    ]
+    fits = [form_values(resolve(name).require_fitted(), points) for name in FITS]
     return {**found, "fit": np.stack(fits, axis=-1).reshape(shape)}
 
 
