@@ -13,12 +13,10 @@ from jax import Array
 from coefficients.agreement import fitted_form
 from coefficients.packaged import packaged_table
 from quantities import problem
-from shading.fuzz.lit_cone import scattered_fraction
+from shading.fuzz.lit_cone import FEWEST_STEPS, scattered_fraction
 from shading.types import Scalar
 
 G, Q, R = "best/g-17", "best/q-5", "best/r-40-wide"
-# One Newton step for λ: P_s has an error of at most 3e-4 (docs/closed-form.md).
-PS_STEPS = 1
 
 
 @functools.cache
@@ -53,4 +51,4 @@ def average_scattered(alpha: Scalar, cos_nt: Scalar) -> Array:
 
 def scattered(cos_v: Scalar, cos_vt: Scalar, cos_nt: Scalar, alpha: Scalar) -> Array:
     """Return P_s(v)."""
-    return scattered_fraction(cos_v, cos_vt, cos_nt, alpha, PS_STEPS)
+    return scattered_fraction(cos_v, cos_vt, cos_nt, alpha, FEWEST_STEPS)

@@ -11,7 +11,8 @@ from itertools import product
 
 from programs.languages.spelling import words
 
-_TEXT_WIDTHS = [
+# What follows INT in the names of integer types and their limits: INT8_MAX, INT_FAST8_MAX, …
+_INTEGER_WIDTHS = [
     *map(str, (8, 16, 32, 64)),
     *(f"{kind}{width}" for kind in ("_FAST", "_LEAST") for width in (8, 16, 32, 64)),
 ]
@@ -46,12 +47,12 @@ C_MACROS = frozenset(
     | {f"{kind}_{end}" for kind in _INTEGERS for end in ("MIN", "MAX")}
     | {
         f"{sign}INT{width}_{end}"
-        for sign, width, end in product(("", "U"), _TEXT_WIDTHS, ("MIN", "MAX"))
+        for sign, width, end in product(("", "U"), _INTEGER_WIDTHS, ("MIN", "MAX"))
     }
     | {
         f"{way}{letter}{width.replace('_', '')}"
         for way, letters in (("PRI", "diouxX"), ("SCN", "dioux"))
-        for letter, width in product(letters, [*_TEXT_WIDTHS, "MAX", "PTR"])
+        for letter, width in product(letters, [*_INTEGER_WIDTHS, "MAX", "PTR"])
     }
     | {
         f"{kind}_{limit}"
@@ -143,7 +144,7 @@ _TYPES = words(
     "jmp_buf ldiv_t lldiv_t max_align_t mbstate_t memory_order nullptr_t once_flag ptrdiff_t",
     "sig_atomic_t size_t ssize_t time_t tm timespec lconv uintmax_t uintptr_t va_list wchar_t",
     "wctrans_t wctype_t wint_t char16_t char32_t",
-) | {f"{sign}int{width.lower()}_t" for sign, width in product(("", "u"), _TEXT_WIDTHS)}
+) | {f"{sign}int{width.lower()}_t" for sign, width in product(("", "u"), _INTEGER_WIDTHS)}
 
 C_LIBRARY = (
     _FUNCTIONS

@@ -18,11 +18,10 @@ _COMMON = words(
 )
 
 
-def _shapes(scalars: frozenset[str], pattern: str, several: bool = True) -> frozenset[str]:
-    """Return the names of vectors, and of matrices, of 2 to 4 numbers."""
-    sizes = ["1", "2", "3", "4"]
-    sizes += [f"{rows}x{columns}" for rows, columns in product("1234", "1234")] if several else []
-    return frozenset(pattern.format(kind, size) for kind, size in product(scalars, sizes))
+def _shapes(scalars: frozenset[str]) -> frozenset[str]:
+    """Return the names of vectors of 1 to 4 numbers, and of matrices up to 4 × 4."""
+    sizes = [*"1234", *(f"{rows}x{columns}" for rows, columns in product("1234", "1234"))]
+    return frozenset(f"{kind}{size}" for kind, size in product(scalars, sizes))
 
 
 # GLSL
@@ -100,7 +99,6 @@ HLSL_WORDS = _shapes(
         "bool int uint dword half float double min16float min10float min16int min12int min16uint",
         "int16_t int32_t int64_t uint16_t uint32_t uint64_t float16_t float32_t float64_t",
     ),
-    "{}{}",
 ) | words(
     "int16_t int32_t int64_t uint16_t uint32_t uint64_t int8_t4_packed uint8_t4_packed",
     "Texture1DArray Texture2DArray Texture2DMS Texture2DMSArray TextureCubeArray RWTexture1D",
@@ -138,7 +136,7 @@ HLSL_LIBRARY = _COMMON | words(
     "IgnoreHit InstanceID PrimitiveIndex",
 )
 SLANG_LIBRARY = HLSL_LIBRARY | words(
-    "acosh asinh atanh bit_cast bitCast bwd_diff bwd_diff copysign cospi createDynamicObject",
+    "acosh asinh atanh bit_cast bitCast bwd_diff copysign cospi createDynamicObject",
     "detach diffPair DifferentialPair dFdx dFdy exp10 fdim firstbithigh fmax fmax3 fmin fmin3",
     "fract fwd_diff getRealtimeClock getStringHash hypot isDifferentialNull IDifferentiable max3",
     "median3 min3 mix mod nextafter no_diff Optional outerProduct powr rint sinpi sizeof sincospi",
@@ -237,16 +235,18 @@ _CUDA_MATH = words(
     "cospi cyl_bessel_i0 cyl_bessel_i1 erfcinv erfcx erfinv exp10 fdivide max min norm norm3d",
     "norm4d normcdf normcdfinv rcbrt rhypot rnorm rnorm3d rnorm4d rsqrt sincos sincospi sinpi",
 )
-CUDA_LIBRARY = frozenset(name + end for name, end in product(_CUDA_MATH, ("", "f"))) | words(
-    "atomicAdd atomicAnd atomicCAS atomicDec atomicExch atomicInc atomicMax atomicMin atomicOr",
-    "atomicSub atomicXor clock clock64 llmax llmin ullmax ullmin umax umin half2 mulhi mul24",
-    "saturate surf1Dread surf2Dread tex1D tex1Dfetch tex2D tex2DLod tex3D texCubemap texture",
-    "cudaError cudaFree cudaMalloc cudaMemcpy cudaStream_t",
-)
-_CUDA_SHAPES = frozenset(
+CUDA_WORDS = frozenset(
     f"{kind}{size}"
     for kind in words("char uchar short ushort int uint long ulong longlong ulonglong float double")
     for size in "1234"
 )
-CUDA_WORDS = _CUDA_SHAPES
-CUDA_LIBRARY |= {f"make_{each}" for each in _CUDA_SHAPES}
+CUDA_LIBRARY = (
+    frozenset(name + end for name, end in product(_CUDA_MATH, ("", "f")))
+    | frozenset(f"make_{each}" for each in CUDA_WORDS)
+    | words(
+        "atomicAdd atomicAnd atomicCAS atomicDec atomicExch atomicInc atomicMax atomicMin atomicOr",
+        "atomicSub atomicXor clock clock64 llmax llmin ullmax ullmin umax umin half2 mulhi mul24",
+        "saturate surf1Dread surf2Dread tex1D tex1Dfetch tex2D tex2DLod tex3D texCubemap texture",
+        "cudaError cudaFree cudaMalloc cudaMemcpy cudaStream_t",
+    )
+)

@@ -14,13 +14,12 @@ from jax import Array
 
 from shading.fuzz.ambient import lit_by_constants
 from shading.fuzz.layer_light import Constants, LayerLight, LayerView, length_squared
+from shading.fuzz.lit_cone import FEWEST_STEPS
 from shading.fuzz.lit_moments import LitMoments, lit_moments
 from shading.types import Scalar
 
 # The least α, v·n and d. At v·n = 0 the kernel of the layer has no limit for d → 0.
 LEAST_ALPHA, LEAST_COSINE, LEAST_DENSITY = 0.05, 1e-3, 1e-3
-# One Newton step for λ: P_s has an error of at most 3e-4 (docs/closed-form.md).
-_STEPS = 1
 
 
 class _Place(NamedTuple):
@@ -138,7 +137,7 @@ def _placed(view: LayerView) -> _Place:
     density = jnp.maximum(view.density, LEAST_DENSITY)
     kappa = (1 - alpha) * (1 + alpha)
     area = jnp.sqrt(1 - kappa * (a * a))
-    moments = lit_moments(c, a, b, alpha, _STEPS)
+    moments = lit_moments(c, a, b, alpha, FEWEST_STEPS)
     # Only rounding, and cosines that belong to no unit vectors, lead to more than one.
     moments = moments._replace(
         fraction=jnp.minimum(moments.fraction, 1.0), cosine=jnp.minimum(moments.cosine, 1.0)
