@@ -82,8 +82,8 @@ verify: toolchains  ## compile, run and compare the exported code of every table
 	$(BIN)/shadefit verify $(patsubst coefficients/tables/fuzz/%.json,%,$(wildcard coefficients/tables/*/best/*.json))
 
 bench: setup  ## reproduce the claims of speed, as ratios measured in one run
-	$(BIN)/python benchmarks/refits.py --write docs
-	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/refit_times.py --write docs
+	$(BIN)/python benchmarks/speed_ratios.py
 	$(BIN)/python benchmarks/samplers.py
 
 format: setup  ## format and mend what can be mended

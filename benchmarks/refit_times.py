@@ -1,4 +1,4 @@
-"""Processor time of refits: `python benchmarks/refits.py [--write FOLDER] [--grids N,N,…]`.
+"""Processor time of refits: `python benchmarks/refit_times.py [--write FOLDER] [--grids N,N,…]`.
 
 (a) The four tables of the paper, and these with `velvet`, on 65×65 nodes: once with an empty cache
 of compiled programs, once again, and by plain NumPy and SciPy with the closed forms

@@ -1,4 +1,4 @@
-"""Measure curvature of a large mesh: `python benchmarks/curvature_speed.py [TRIANGLES]`.
+"""Measure curvature of a large mesh: `python benchmarks/curvature_times.py [TRIANGLES]`.
 
 Prints the CPU time and the largest memory of tensors, of their smoothing by the talk's two widths,
 and of the drift, for a torus of 60 and 25 mm with uneven triangles. Prints then the error of the

@@ -1,4 +1,4 @@
-"""Measure what each curvature is worth for skin: `python benchmarks/curvature.py [POINTS]`.
+"""Measure what each curvature is worth for skin: `python benchmarks/curvature_errors.py [POINTS]`.
 
 Prints the rms and the largest error of red over random points and lights of several surfaces, and
 the error of the brute-force diffusion itself: against the sphere's exact light, and against fewer

@@ -1,8 +1,8 @@
-"""Measure speed as ratios within one run: `python benchmarks/run.py [--json]`.
+"""Measure speed as ratios within one run: `python benchmarks/speed_ratios.py [--json]`.
 
 (a) The processor time of `shadefit refit ps g q r` at 65×65 without a cache, imports and
 compilation included, compared with that of the same task in plain NumPy and SciPy without closed
-forms (plain_scipy.py); refits.py compares with a script that knows them. (b) The evaluations
+forms (plain_scipy.py); refit_times.py compares with a script that knows them. (b) The evaluations
 per second of P_s by its closed form, compared with quadrature of its definition. (c) The time until
 commands that need no JAX have ended, compared with that of an empty Python program.
 """
