@@ -10,8 +10,9 @@ import numpy as np
 from fitting.form import FittedForm, Form
 from fitting.points.domain import Domain
 from fitting.points.scattered import OFF_GRID_SEED, checking_points, judging_points
+from integrals.batches import in_batches
 from integrals.compilation import jit_for_few_calls
-from integrals.reference import Axis, box_of, in_batches
+from integrals.reference import Axis, box_of
 
 _BATCH = 8192
 

@@ -15,9 +15,10 @@ import numpy as np
 from jax import Device
 
 from integrals.along_lines import estimates_along_lines
+from integrals.batches import in_batches
 from integrals.compilation import jit_for_few_calls
 from integrals.devices import all_devices, spread
-from integrals.reference import Estimate, Reference, in_batches
+from integrals.reference import Estimate, Reference
 
 # A quantity with smaller batches has so many nodes at a point that one point fills the cache.
 _SMALL_BATCH = 256

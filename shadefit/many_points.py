@@ -1,4 +1,7 @@
-"""Values at many points: exact ones with their errors, and those of fitted forms."""
+"""Values at many points: exact ones with their errors, and those of fitted forms.
+
+These are the public functions. `integrals.many_points` chooses how exact values are computed.
+"""
 
 import jax.numpy as jnp
 import numpy as np

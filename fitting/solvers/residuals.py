@@ -12,7 +12,7 @@ from fitting.form import Form
 from fitting.goal import Side
 from fitting.linearity import LinearParts, linear_parts, positive_of
 from fitting.points.scattered import scattered_points
-from integrals.reference import Batches
+from integrals.batches import Batches
 
 # The number of points at which values are evaluated at once, and at which derivatives are.
 _BATCH, _BATCH_OF_SLOPES = 4096, 512

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from integrals import PS, REFERENCES, Axis, Estimate, R, Reference, Sampling
-from integrals.reference import box_of, in_batches, leg, require_float64, restricted
+from integrals.reference import box_of, leg, require_float64, restricted
 from tests.integrals.problems import KNOWN_VALUES, RIGHT
 
 # A correct Monte Carlo estimate exceeds this many standard errors once in 1.7 million trials.
@@ -319,20 +319,6 @@ def test_values_are_those_of_the_best_leg(name):
     options = reference.options_at(points)
     expected = [float(best(*point, **options).value) for point in points]
     np.testing.assert_allclose(reference.values(points), expected, rtol=1e-14)
-
-
-def test_in_batches_joins_all_results():
-    sizes = []
-
-    def function(points):
-        sizes.append(len(points))
-        return points[:, 0], points @ np.ones((2, 3))
-
-    points = np.arange(14.0).reshape(7, 2)
-    first, table = in_batches(function, points, 3)
-    assert sizes == [3, 3, 3]
-    np.testing.assert_array_equal(first, points[:, 0])
-    np.testing.assert_array_equal(table, points @ np.ones((2, 3)))
 
 
 def test_axes_are_restricted_by_name():
