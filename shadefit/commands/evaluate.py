@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from shadefit.commands.axis_options import axis_values
 from shadefit.commands.names import require_quantities, require_tables
-from shadefit.commands.options import Json, angle, checked, flag_of
+from shadefit.commands.options import Json
 from shadefit.commands.point_files import csv_text, read_points, require_format, written
 from shadefit.completion import complete_table
 
 if TYPE_CHECKING:
     from coefficients.catalogue import Entry
     from fitting import FittedForm
-    from integrals.reference import Axis, Estimate, Reference
+    from integrals.reference import Estimate, Reference
     from quantities import Problem
 
 MAX_SAMPLES = 1 << 24
@@ -204,43 +205,6 @@ def _owner(name: str) -> "Problem":
     if name not in names():
         raise ValueError(f"no integral is called {name!r}: allowed are {', '.join(names())}")
     return problem(name)
-
-
-def axis_values(owner: "Problem", given: list[str]) -> dict[str, float]:
-    """Read the options for a quantity's axes, such as ['--alpha', '0.35', '--phi=90deg'].
-
-    Returns the values by the names of the axes, in the order of the axes. Raises ValueError for an
-    option that is missing or that the quantity does not have, and for a value outside the domain of
-    its axis.
-    """
-    flags = {flag_of(name): axis for axis in owner.axes for name in (axis.name, axis.alias) if name}
-    wanted = ", ".join(flag_of(axis.name) for axis in owner.axes)
-    values: dict[str, float] = {}
-    rest = list(given)
-    while rest:
-        flag, equals, text = rest.pop(0).partition("=")
-        if flag not in flags:
-            raise ValueError(f"{flag} is no argument of {owner.name}, which takes {wanted}")
-        if not equals:
-            if not rest:
-                raise typer.BadParameter(f"Option '{flag}' requires an argument.")
-            text = rest.pop(0)
-        values[flags[flag].name] = _number(flag, flags[flag], text)
-    for axis in owner.axes:
-        if axis.name not in values:
-            flag = flag_of(axis.name)
-            raise ValueError(f"{flag} is missing of {owner.name}, which takes {wanted}")
-    return {axis.name: checked(axis, values[axis.name]) for axis in owner.axes}
-
-
-def _number(flag: str, axis: "Axis", text: str) -> float:
-    if axis.unit == "rad":
-        return angle(text)
-    try:
-        return float(text)
-    except ValueError:
-        message = f"Invalid value for '{flag}': {text!r} is not a valid float."
-        raise ValueError(message) from None
 
 
 @functools.lru_cache(maxsize=16)
