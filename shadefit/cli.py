@@ -31,7 +31,7 @@ from shadefit.commands.report import report
 from shadefit.commands.search import search
 from shadefit.commands.verify import verify
 from shadefit.encoding import install, visible
-from shadefit.environment import settle
+from shadefit.environment import fix_environment
 from shadefit.standard_streams import READER_GONE, OutputError, end, end_without_output
 
 # Characters; a path may have this many.
@@ -187,7 +187,7 @@ def _global(
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line. Bad input gives one line on standard error and exit status 2."""
-    settle()
+    fix_environment()
     install()
     given = sys.argv[1:] if arguments is None else arguments
     try:

@@ -28,8 +28,8 @@ _XLA_FLAGS = "XLA_FLAGS"
 _KEPT_FLAG = re.compile(r"--xla_force_host_platform_device_count=[1-9]\d{0,3}")
 
 
-def settle(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Set and remove the variables that would change what a command computes."""
+def fix_environment(environment: MutableMapping[str, str] = os.environ) -> None:
+    """Set or remove every variable that would change what a command computes."""
     for name in list(environment):
         if _REMOVED.fullmatch(name) and not _KEPT.fullmatch(name):
             del environment[name]

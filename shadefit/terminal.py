@@ -26,8 +26,8 @@ NOT_FINITE = {"inf": "infinity", "-inf": "-infinity", "nan": "no number"}
 
 
 @contextmanager
-def apart_from(*files: Path | None) -> Generator[None]:
-    """Print to standard error if one of the files that a command writes is standard output."""
+def messages_beside(*files: Path | None) -> Generator[None]:
+    """Print messages to standard error if one of the files of a command is standard output."""
     with redirect_stdout(sys.stderr) if OUTPUT in files else nullcontext():
         yield
 

@@ -76,6 +76,7 @@ class _Surface:
         cosines = self.cos_v, self.cos_vt, self.cos_nt
         if "scattered" not in model.arguments:
             thickness = clamped(self.density, 0.0, LARGEST_DENSITY)
+            # These models have a P_s of their own, and do not read this one.
             return model(LayerView(*cosines, self.alpha, thickness, scattering, 0.5))
         limits = ((LEAST_COSINE, 1.0), (-1.0, 1.0), (-1.0, 1.0), (LEAST_ALPHA, 1.0))
         inside = [clamped(x, *ends) for x, ends in zip((*cosines, self.alpha), limits, strict=True)]

@@ -37,6 +37,7 @@ LIT = Problem(
         codomain=_CODOMAIN,
         material="FuzzLitMaterial",
     ),
-    # A table of it names no arguments for the axes: the code takes v·t and P_s for three of them.
+    # With a topic, tables have no `about`. It would name an argument for each axis, but here v·t
+    # and P_s stand for three axes.
     topic="fuzz",
 )

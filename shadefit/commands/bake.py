@@ -82,7 +82,7 @@ def bake(
     from shadefit.commands.table_records import errors_record
     from shadefit.outputs import BakedAxis, BakeOutput, BakeSource, BesideTable
     from shadefit.progress import stages
-    from shadefit.terminal import apart_from, print_json
+    from shadefit.terminal import messages_beside, print_json
 
     counts = _size(size)
     made = _source(source)
@@ -149,7 +149,7 @@ def bake(
             for each in others
         ],
     )
-    with apart_from(path):
+    with messages_beside(path):
         if json:
             print_json(report)
         else:

@@ -78,7 +78,7 @@ def curvature(
     from shadefit.curvature.files import ply_bytes, read_mesh
     from shadefit.curvature.smoothing import convex, normal_drift, smoothed
     from shadefit.curvature.vertex_bytes import require_range
-    from shadefit.terminal import apart_from, print_json
+    from shadefit.terminal import messages_beside, print_json
 
     if unit is None:
         raise ValueError("the unit of the mesh is not known: give --unit mm, cm, m or in")
@@ -109,7 +109,7 @@ def curvature(
     for path, content in files.items():
         write_whole_bytes(path, content)
     record = _record(mesh, unit, chosen, keep_concave, largest, shape, found, drift, list(files))
-    with apart_from(out):
+    with messages_beside(out):
         if json:
             print_json(record)
         else:

@@ -74,7 +74,7 @@ def ndf(
     from coefficients.files import write_whole
     from coefficients.ndf_table import serialise_ndf
     from shadefit.material_outputs import NdfCheck
-    from shadefit.terminal import apart_from, print_json
+    from shadefit.terminal import messages_beside, print_json
 
     _require(linear_in, to, code, verify, out)
     table = _table(
@@ -103,7 +103,7 @@ def ndf(
         NdfCheck(function=key, language=each.language, status=each.status, reason=each.reason)
         for key, each in checks.items()
     ]
-    with apart_from(out, code):
+    with messages_beside(out, code):
         if json:
             print_json(_output(table, verified, files, _costs(table) if cost else []))
         else:

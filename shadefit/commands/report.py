@@ -42,7 +42,7 @@ def report(
     from shadefit.figures import pictures as every_picture
     from shadefit.progress import stages
     from shadefit.report.page import page
-    from shadefit.terminal import apart_from, print_lines
+    from shadefit.terminal import messages_beside, print_lines
 
     require_writable_file(out)
     more = _more(tables or [])
@@ -60,7 +60,7 @@ def report(
         stage.show("tables")
         drawn = {name: taken[name] for name in known if name in taken}
         write_whole(out, page(drawn, more))
-    with apart_from(out):
+    with messages_beside(out):
         print_lines(out)
 
 

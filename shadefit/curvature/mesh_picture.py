@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from shadefit.curvature.meshes import Mesh
 from shadefit.curvature.raster import rasterise
-from shadefit.curvature.skin_light import ALBEDO, LOOKS, Skin
+from shadefit.curvature.skin_light import ALBEDO, SHADERS, Skin
 from shadefit.figures.style import ERRORS, render
 from shadefit.figures.values import error_text, round_up
 from shadefit.render.srgb import to_srgb
@@ -72,7 +72,7 @@ def draw_mesh(mesh: Mesh, skin: Skin, view: View) -> bytes:
     )
     raster = rasterise(pixels, mesh.triangles, (tall, wide))
     points = skin.at(*raster.corners(mesh.triangles))
-    images = {name: LOOKS[name](points, light) for name in (LAMBERT, TABLE, FIT)}
+    images = {name: SHADERS[name](points, light) for name in (LAMBERT, TABLE, FIT)}
     bend = np.trace(points.tensors, axis1=1, axis2=2) / 2
     covered = raster.covered
     maps = {

@@ -1,6 +1,6 @@
 """The light on skin as renderers shade it: N·L, a lookup table, and fits, by several curvatures.
 
-`LOOKS` has the ways by name. Each takes the points of a surface and a light.
+`SHADERS` has a function for each, which takes the points of a surface and the direction to a light.
 """
 
 import functools
@@ -110,8 +110,9 @@ def _from_equivalent(skin: Skin, light: np.ndarray) -> np.ndarray:
     return values * np.column_stack([each[2] for each in found])
 
 
-# The values (n, 3) of D in red, green and blue at points of a surface, for a unit vector to a light
-LOOKS: dict[str, Callable[[Skin, np.ndarray], np.ndarray]] = {
+# By name: a function that returns D (n, 3) of red, green and blue light at points of a surface, for
+# a unit vector to a light
+SHADERS: dict[str, Callable[[Skin, np.ndarray], np.ndarray]] = {
     "N·L": _lambert,
     "LUT, κ along the light": _from_table,
     "fit, effective κ": _from_fit,

@@ -13,7 +13,7 @@ from shadefit.curvature.comparison import on_sphere
 from shadefit.curvature.diffusion import diffused, patch
 from shadefit.curvature.generators import finger, icosphere, torus
 from shadefit.curvature.raster import rasterise
-from shadefit.curvature.skin_light import ALBEDO, LOOKS, skin_of
+from shadefit.curvature.skin_light import ALBEDO, SHADERS, skin_of
 from shadefit.curvature.smoothing import DRIFT_WIDTH
 from shadefit.curvature.surfaces import Ellipsoid, Finger, Surface, Torus
 from shadefit.figures.picture import Picture
@@ -81,7 +81,7 @@ def shaded(scale: float = _SCALE, nodes: int = _NODES) -> Shaded:
     """Return the picture's images at so many pixels for a mm."""
     size = (round(_SHOWN[1] * scale), round(_SHOWN[0] * scale))
     light = _LIGHT / np.linalg.norm(_LIGHT)
-    images = {name: np.zeros((*size, 3)) for name in (*LOOKS, "truth")}
+    images = {name: np.zeros((*size, 3)) for name in (*SHADERS, "truth")}
     covered = np.zeros(size, bool)
     for each in placed():
         made = each.mesh
@@ -98,8 +98,8 @@ def shaded(scale: float = _SCALE, nodes: int = _NODES) -> Shaded:
         raw = curvature(made)
         skin = skin_of(made, raw, raw, DRIFT_WIDTH).at(corners, weights)
         own = each.turn.T @ light
-        for name, look in LOOKS.items():
-            images[name][raster.covered] = look(skin, own)
+        for name, shader in SHADERS.items():
+            images[name][raster.covered] = shader(skin, own)
         points = np.einsum("pk,pki->pi", weights, made.vertices[corners])
         images["truth"][raster.covered] = _truth(each.surface, points, own, nodes)
         covered |= raster.covered

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from shadefit.environment import settle
+from shadefit.environment import fix_environment
 
 FIXED = {
     "JAX_ENABLE_X64": "1",
@@ -60,13 +60,13 @@ def test_variables_that_change_numbers_are_fixed_and_others_stay():
     others = {"HOME": "/", "JAX_COMPILATION_CACHE_DIR": "/c", "JAX_PERSISTENT_CACHE_MIN_SIZE": "1"}
     flags = "--xla_cpu_enable_fast_math=true --xla_force_host_platform_device_count=2 rubbish"
     given = {**HOSTILE, **others, "XLA_FLAGS": flags}
-    settle(given)
+    fix_environment(given)
     devices = "--xla_force_host_platform_device_count=2"
     assert given == {**others, **FIXED, "XLA_FLAGS": devices}
-    settle(given)
+    fix_environment(given)
     assert given["XLA_FLAGS"] == devices
     bare = {}
-    settle(bare)
+    fix_environment(bare)
     assert bare == FIXED
 
 

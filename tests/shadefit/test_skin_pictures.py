@@ -6,7 +6,7 @@ import pytest
 from shadefit.curvature.generators import icosphere, torus
 from shadefit.curvature.mesh_picture import axes_of
 from shadefit.curvature.raster import rasterise
-from shadefit.curvature.skin_light import LOOKS, Skin
+from shadefit.curvature.skin_light import SHADERS, Skin
 from shadefit.figures.skin_surfaces import shaded
 
 RANDOM = np.random.default_rng(4)
@@ -91,15 +91,15 @@ def test_looks_agree_with_lambert_on_a_plane_and_the_equivalent_cylinder_is_near
     zero = np.zeros((count, 3, 3))
     flat = Skin(normals, zero, zero, np.zeros((count, 3)))
     light = np.array([0.0, 0, 1])
-    for name, look in LOOKS.items():
+    for name, shader in SHADERS.items():
         # Between texels the table rounds the kink off, and it has 8 bits.
         tolerance = 5e-3 if name.startswith("LUT") else 1e-7
         expected = np.repeat(np.maximum(heights, 0)[:, None], 3, axis=1)
-        np.testing.assert_allclose(look(flat, light), expected, atol=tolerance, err_msg=name)
+        np.testing.assert_allclose(shader(flat, light), expected, atol=tolerance, err_msg=name)
     found = shaded(0.6, 2)
     truth = found.images["truth"]
     rms = [
-        np.sqrt(np.mean((found.images[name] - truth)[found.covered][:, 0] ** 2)) for name in LOOKS
+        np.sqrt(np.mean((found.images[name] - truth)[found.covered][:, 0] ** 2)) for name in SHADERS
     ]
     assert np.all(np.diff(rms) < 0)
     assert rms[3] < 0.3 * rms[1]

@@ -14,7 +14,7 @@ from coefficients.packaged import names, packaged_table
 from programs.rounded_text import rounded_up
 from shadefit.outputs import ListOutput
 from shadefit.records import ErrorsRecord, TableRecord
-from shadefit.terminal import apart_from, print_json, print_lines, print_table
+from shadefit.terminal import messages_beside, print_json, print_lines, print_table
 from tests.shadefit.screen import Session, screen
 
 
@@ -98,7 +98,7 @@ def test_lines_of_a_note_are_kept_and_an_empty_cell_below_left_out(capsys):
 
 def test_what_is_said_beside_a_file_on_standard_output_goes_to_standard_error(capsys):
     for files in ([Path("-")], [None, Path("-")], [None, Path("file")], []):
-        with apart_from(*files):
+        with messages_beside(*files):
             print_table("title", ["name"], [["a"]])
         out, error = capsys.readouterr()
         assert ("title" in error, "title" in out) == (Path("-") in files, Path("-") not in files)
