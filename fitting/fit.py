@@ -113,7 +113,7 @@ def fit(
         if goal == LEAST_SQUARES:
             return _on_grid(form, found, nodes)
         start = np.asarray(found.coefficients).ravel()
-    solver = exchange or form.exchange or Exchange()
+    solver = exchange or form.scattered_solver or Exchange()
     found = solver.fit(form, goal, measure, start, progress, counterexamples)
     progress(f"{form.name}: errors and certificate")
     return _scattered(form, found, goal, measure)

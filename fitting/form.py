@@ -94,7 +94,7 @@ class Form:
     * `starts`: coefficients that a fit may start from. None of them is from a published table.
     * `shape`: the arguments that make this form in its family; None for a form of no family.
     * `solver`: fits the form on a grid (`fitting/solvers`); None stands for the general `OnGrid`.
-    * `exchange`: fits the form to scattered points; None stands for the general `Exchange`.
+    * `scattered_solver`: fits the form to scattered points; None stands for the general `Exchange`.
     * `printed`: where the equation is printed, such as 'Eq. (3)'; empty if nowhere.
     * `has_least_error`: whether to look for a lower bound of the largest error. There is one only
       for a form that is a quotient of linear functions of its coefficients.
@@ -112,7 +112,7 @@ class Form:
     shape: dict[str, Any] | None = None
     proofs: Proofs = field(default_factory=Proofs)
     solver: Any = None
-    exchange: Any = None
+    scattered_solver: Any = None
     has_least_error: bool = True
     printed: str = ""
 

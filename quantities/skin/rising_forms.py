@@ -137,7 +137,7 @@ def rising_form(
         plain,
         name="rising-skin",
         proofs=Proofs(axes=PROOF_AXES, value=value, margins=margins),
-        exchange=WithinMargins(),
+        scattered_solver=WithinMargins(),
     )
 
 

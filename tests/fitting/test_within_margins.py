@@ -28,7 +28,7 @@ def parabola(x, a, b, c):
 def form_with(margins):
     plain = plain_form(parabola, REFERENCE)
     solver = WithinMargins(room=0.0, first=1, nodes=9, coarse=1)
-    return replace(plain, proofs=Proofs(margins=margins), exchange=solver)
+    return replace(plain, proofs=Proofs(margins=margins), scattered_solver=solver)
 
 
 RISING = form_with(lambda c, x: (c[1] + 2 * c[2] * x,))
@@ -37,20 +37,20 @@ LARGEST = Goal(norm="linf")
 
 def test_the_best_monotone_function_is_found():
     """(x − ½)² falls by ¼, so the errors of a rising function are at least half of that."""
-    found = RISING.exchange.fit(RISING, LARGEST, "uniform", None, lambda _: None)
+    found = RISING.scattered_solver.fit(RISING, LARGEST, "uniform", None, lambda _: None)
     assert found.converged
     values = parabola(found.sample.points[:, 0], *found.coefficients)
     assert np.abs(values - found.sample.exact).max() == pytest.approx(0.125, abs=2e-4)
     assert found.coefficients[1] >= -1e-9
     # Without the constraint the form is exact.
     free = form_with(lambda c, x: (jnp.ones(()) + 0 * c[0],))
-    found = free.exchange.fit(free, LARGEST, "uniform", None, lambda _: None)
+    found = free.scattered_solver.fit(free, LARGEST, "uniform", None, lambda _: None)
     np.testing.assert_allclose(found.coefficients, [0.25, -1.0, 1.0], atol=1e-6)
 
 
 def test_coefficients_are_rounded_within_the_constraints():
     goal = Goal(norm="linf", rounding="float16")
-    found = RISING.exchange.fit(RISING, goal, "uniform", None, lambda _: None)
+    found = RISING.scattered_solver.fit(RISING, goal, "uniform", None, lambda _: None)
     np.testing.assert_array_equal(found.coefficients, found.coefficients.astype(np.float16))
     assert found.coefficients[1] >= -1e-9
     assert found.coefficients[1] + 2 * found.coefficients[2] >= -1e-9
