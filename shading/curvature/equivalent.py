@@ -45,8 +45,8 @@ def equivalent_cylinder(tensor: Tensor, light: Projected, cosine: Scalar) -> Equ
     """Return the cylinder with the light of a surface: it is scale · D(cosine, curvature).
 
     `cosine` is n·l, not clamped at 0, or that of `drifted`. `light` is (l·t, l·b), not normalised.
-    For a unit light without a drift the scale is at most 1; a drift that makes |n·l| larger may take
-    it, and so the light, above 1. All values and gradients are finite.
+    For a unit light without a drift the scale is at most 1. A drift that makes |n·l| larger may
+    take it, and so the light, above 1. All values and gradients are finite.
     """
     entries, c = jnp.asarray(tensor), jnp.asarray(cosine)
     x, y = jnp.asarray(light)
