@@ -31,7 +31,7 @@ _LEAST = 2e-5
 
 
 class EquivalentCylinder(NamedTuple):
-    """The arguments of a fit of D, and the `scale` in [0, 1] that its value is multiplied by.
+    """The arguments of a fit of D, and the `scale` ≥ 0 that its value is multiplied by.
 
     `curvature` is in 1/mm. `cosine` is in [−1, 1]. On a flat surface all is as without diffusion.
     """
@@ -45,7 +45,8 @@ def equivalent_cylinder(tensor: Tensor, light: Projected, cosine: Scalar) -> Equ
     """Return the cylinder with the light of a surface: it is scale · D(cosine, curvature).
 
     `cosine` is n·l, not clamped at 0, or that of `drifted`. `light` is (l·t, l·b), not normalised.
-    The scale exceeds 1 only if the drift takes |n·l| beyond 1. All values and gradients are finite.
+    For a unit light without a drift the scale is at most 1. A drift that makes |n·l| larger may
+    take it, and so the light, above 1. All values and gradients are finite.
     """
     entries, c = jnp.asarray(tensor), jnp.asarray(cosine)
     x, y = jnp.asarray(light)

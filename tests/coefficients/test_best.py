@@ -189,8 +189,8 @@ NOT_LEAST = {
     # Its only coefficient is rounded to float32.
     "best/skin-band-1-blue-7": 0.008,
 }
-# The bound of a form with constraints is that without them.
-CONSTRAINED = 0.51
+# The bound of a form with constraints is that without them. So this is what they cost, by channel.
+CONSTRAINED = {"red": 0.38, "green": 0.51, "blue": 0.4}
 # Fits whose largest error elsewhere is further above that at their own points.
 NOT_SETTLED = {"best/ps-11": 0.006, "best/ggx-scale-83": 0.006, "best/ggx-bias-93": 0.012}
 # A change of one coefficient by one per cent can be undone, to first order.
@@ -208,7 +208,8 @@ def test_a_best_table_says_how_near_it_is_to_the_best_coefficients(name):
     if least is not None:
         largest = table.errors.off_grid.max
         assert least <= table.errors.on_grid.max * (1 + 1e-9)
-        gap = CONSTRAINED if name.endswith("-rising") else NOT_LEAST.get(name, GAP)
+        rising = name.endswith("-rising")
+        gap = CONSTRAINED[name.split("-")[2]] if rising else NOT_LEAST.get(name, GAP)
         assert (1 - gap) * largest < least <= largest * (1 + 1e-9)
     if local is not None:
         # At the points of the fit, where the largest error may be less than elsewhere.

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from integrals import Axis, Estimate, R, Reference, Sampling
+from integrals import along_lines as module
 from integrals.along_lines import TOLERANCE, estimates_along_lines
 from integrals.many_points import estimates_at_many
 
@@ -53,7 +54,7 @@ def test_a_smooth_line_takes_few_values_and_states_its_error():
     assert count == 3 * 33
     wrong = np.abs(found.value - np.exp(points[:, 0] * points[:, 1]) / 8)
     assert (wrong <= found.error).all()
-    assert (found.error <= 3 * STATED + TOLERANCE).all()
+    assert (found.error <= 3.2 * STATED + TOLERANCE).all()
 
 
 def test_a_line_of_a_peak_takes_more_nodes_and_a_kink_every_point():
@@ -68,6 +69,42 @@ def test_a_line_of_a_peak_takes_more_nodes_and_a_kink_every_point():
     wrong = np.abs(found.value - shape(*points.T))
     assert (wrong <= found.error).all()
     assert (found.value[800:] == shape(*points[800:].T)).all()
+
+
+@pytest.mark.parametrize("count", [33, 65])
+def test_errors_at_the_nodes_grow_by_the_lebesgue_constant_at_most(count):
+    """Errors of the worst signs, which the stated error covers and hardly exceeds."""
+    nodes = module._nodes(reference(None), 1, count)
+    between = np.linspace(0, 2, 20_001)
+    worst = np.abs(module._matrix(nodes, between)).sum(axis=1)
+    assert worst.max() <= module._LEBESGUE[count] < 1.01 * worst.max()
+    if count == 33:
+        signs = np.sign(module._matrix(nodes, between[[worst.argmax()]]))[0]
+        points = np.stack([np.zeros(400), between[worst.argmax() + np.arange(-200, 200)]], axis=1)
+
+        def exact(points):
+            off = STATED * np.interp(points[:, 1], nodes, signs)
+            return Estimate(np.cos(points[:, 1]) + off, np.full(len(points), STATED))
+
+        found = estimates_along_lines(reference(None), points, exact)
+        wrong = np.abs(found.value - np.cos(points[:, 1])).max()
+        assert 3 * STATED < wrong <= found.error.min()
+
+
+def test_the_stated_error_has_what_the_half_of_the_nodes_miss():
+    """A peak of which 17 nodes miss less than what is tolerated."""
+
+    def peak(a, b):
+        return 1 / (1 + 0.34 * (b - 1) ** 2) + 0 * a
+
+    points = grid(1, 200)
+    found, count = along(peak, points)
+    assert count == 33
+    nodes = module._nodes(reference(None), 1, 17)
+    by_half = module._matrix(nodes, points[:, 1]) @ peak(0, nodes)
+    missed = np.abs(by_half - peak(0, points[:, 1])).max()
+    # It is measured at the other nodes only, so that a little may be missed.
+    assert 100 * STATED < 0.9 * missed < found.error.min()
 
 
 def test_few_points_are_evaluated_one_by_one():
@@ -94,4 +131,4 @@ def test_r_on_a_line_is_the_integral_within_the_errors(alpha):
     allowed = np.asarray(found.error)[7::60] + np.asarray(alone.error)
     assert (np.abs(np.asarray(found.value)[7::60] - np.asarray(alone.value)) <= allowed).all()
     every = np.asarray(R.estimates(points).error).max()
-    assert (np.asarray(found.error) <= 4.3 * every + TOLERANCE).all()
+    assert (np.asarray(found.error) <= (1 + 3.61) * every + TOLERANCE).all()

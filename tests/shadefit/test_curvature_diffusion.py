@@ -70,7 +70,7 @@ def test_the_equivalent_cylinder_is_nearest_on_a_finger():
 
 
 @pytest.mark.slow
-def test_the_equivalent_cylinder_has_at_most_half_of_the_error_of_curvature_along_the_light():
+def test_the_equivalent_cylinder_has_about_half_of_the_error_of_curvature_along_the_light():
     """At random points and lights of all surfaces; on the sphere it has a tenth."""
     for name, surface in SURFACES.items():
         seen = lit(surface, 100, 5, 4)
@@ -78,7 +78,8 @@ def test_the_equivalent_cylinder_has_at_most_half_of_the_error_of_curvature_alon
         best = rms[BLURRED]
         # On the sphere there is no drift, and blurring changes nothing but the rounding.
         assert best <= min(rms.values()) * (1 + 1e-9), name
-        # At the 600 points of the page it is at most 0.46, at these 100 at most 0.51.
+        # At 600 points it is 0.45 to 0.48 on the ellipsoid 12, 8, 5, depending on the draw, and
+        # less on the others. At 100 points it was 0.40 to 0.51, of which 0.51 is that of this draw.
         assert best <= 0.55 * rms["along the light"], name
         assert rms["effective"] < rms["along the light"], name
         if name == "sphere 10":

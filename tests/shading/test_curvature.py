@@ -133,6 +133,12 @@ def test_a_cylinder_is_its_own_equivalent_and_the_scale_times_its_curvature_is_e
 def test_the_drift_moves_the_cosine_along_the_light():
     found = curvature.drifted(0.3, np.array([0.02, -0.01]), np.array([0.5, 0.2]), 1.4)
     np.testing.assert_allclose(found, 0.3 + 1.4 * (0.01 - 0.002), rtol=1e-14)
+    # A cylinder that is lit across its axis has the scale 1, and more if a drift is added.
+    for cosine in (0.6, 0.65):
+        scale = curvature.equivalent_cylinder(
+            np.array([0.1, 0.0, 0.0]), np.array([0.8, 0.0]), cosine
+        ).scale
+        np.testing.assert_allclose(scale, np.sqrt(0.64 + cosine**2), rtol=1e-14)
 
 
 def _light_of_equivalent(tensor, light):

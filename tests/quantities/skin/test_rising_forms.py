@@ -1,23 +1,28 @@
 """Rising forms of the light on skin: what their margins are, and what their tables reach."""
 
+import re
+from pathlib import Path
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from coefficients.catalogue import resolve
+from coefficients.exported_code import programs_of
 from coefficients.packaged import names_of_best
 from fitting import form_values
 from fitting.proofs.range_proof import certify_range
 from integrals.skin.references import CYLINDER
+from programs import evaluate
 from quantities.skin.hyperbola_forms import MOST_CURVATURE
 from quantities.skin.rising_forms import rising_form
 
 TERMS = ((0, 1), (0, 2), (1, 1), (2, 2), (3, 1), (4, 1), (4, 2), (5, 0), (5, 1))
 FORM = rising_form(CYLINDER[0], narrow=0.3, wide=0.8, numerator=TERMS, below=1)
 C = np.array([0.1, -0.3, 0.2, -0.1, 0.4, -0.2, 0.5, -0.6, 0.3, 0.7])
-# The largest errors that rising tables are to reach, off the grid
-GOALS = {"red": 0.004, "green": 0.0006, "blue": 0.0002}
+# The largest errors that rising tables reach, off the grid
+GOALS = {"red": 0.00134, "green": 0.00037, "blue": 0.000116}
 TABLES = [name for name in names_of_best() if name.endswith("-63-rising")]
 
 
@@ -63,6 +68,34 @@ def test_a_rising_table_rises_and_stays_between_zero_and_one(name):
     assert table.errors.off_grid.max < GOALS[name.split("-")[2]]
     # Without the constraints the values fall.
     assert np.diff(values(name.removesuffix("-rising")), axis=0).min() < -1e-7
+
+
+@pytest.mark.parametrize("name", TABLES, ids=[name[10:-10] for name in TABLES])
+def test_exported_code_in_float_falls_by_rounding_only(name):
+    """Rounding moves a value below one by some 6e-8; docs/skin.md states 8e-8."""
+    (program,) = programs_of(resolve(name))
+    c = np.linspace(-1, 1, 2001)
+    k = np.concatenate([[0.0, 1e-30], np.geomspace(1e-6, MOST_CURVATURE, 30)])
+    at = np.stack(np.meshgrid(k, c, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
+    found = np.ravel(evaluate(program, at, np.float32)).astype(float).reshape(len(k), -1)
+    assert 0 <= found.min() <= found.max() <= 1
+    assert (np.maximum.accumulate(found, axis=1) - found).max() < 1.2e-7
+
+
+PAGE = (Path(__file__).parents[3] / "docs" / "skin.md").read_text(encoding="utf-8")
+
+
+def test_the_page_has_the_errors_of_the_tables():
+    """To half a unit of the digits that it has."""
+    rows = re.findall(r"^\| `(best/skin-\S+)` \| (\d\.\d\de-\d\d) \| (\S+) \|", PAGE, re.M)
+    assert sorted(name for name, _, _ in rows) == sorted(
+        name for name in names_of_best() if name.startswith(("best/skin-c", "best/skin-s"))
+    )
+    for name, largest, second in rows:
+        table = resolve(name).require_table()
+        assert f"{table.errors.off_grid.max:.2e}" == largest
+        expected = table.shape["narrow"] if "rising" in name else table.certificates.least_error
+        assert float(second) == pytest.approx(expected, abs=0.005e-4 if expected < 0.01 else 0)
 
 
 def test_a_form_that_falls_somewhere_is_not_proven():
