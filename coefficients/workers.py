@@ -91,11 +91,14 @@ class Cluster:
         try:
             # An optional package
             from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415
+            from distributed.comm import get_address_host_port  # noqa: PLC0415
         except ImportError:
             raise ValueError(
                 "a cluster needs dask: pip install 'shadefit[cluster]' installs it"
             ) from None
         try:
+            # A client that refuses its address itself tries for 40 s to close what it never opened.
+            get_address_host_port(self.address, strict=True)
             client = Client(self.address, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             reason = f"{error}".splitlines()[0] if f"{error}" else "no answer"

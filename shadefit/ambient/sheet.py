@@ -59,7 +59,10 @@ def _draw(every_exact: np.ndarray, every_model: list[np.ndarray]) -> Figure:
     # The line from the centre shows the direction in which the fibres lean.
     axes[0, 0].plot([0, 0.5], [0, 0], color=FIBRE, marker="o", markevery=[1], markersize=3)
     for axis, title in zip(axes[0], columns, strict=True):
-        axis.set_title(title.replace("of the ", "of the\n"))
+        # One line would be wider than a disk, and cut off at the edge of the sheet.
+        axis.set_title(
+            title.replace("of the ", "of the\n").replace("recommended ", "recommended\n")
+        )
     assert value is not None
     assert error is not None
     bar: dict[str, Any] = {"location": "bottom", "aspect": 30, "shrink": 0.7}

@@ -14,8 +14,8 @@ def ambient(
 ) -> None:
     """Measure the errors of the ambient models, and their largest radiance in uniform light.
 
-    Exact radiances are integrals of the whole BRDF. The picture shows the layer over all
-    views, exact and by two models.
+    Exact radiances are integrals of the whole BRDF. The picture shows the layer
+    over all views, exact and by two models.
     """
     run(out, json)
 

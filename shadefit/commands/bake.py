@@ -68,9 +68,10 @@ def bake(
 ) -> None:
     """Write a lookup texture (LUT) of a quantity or of a table.
 
-    Prints its bytes, its fetches, and its errors against exact values, beside those of the tables
-    of the quantity. A refitted table is baked by the path of its file, as its name is also that of
-    the quantity. By default the domain is that of the table, or of the quantity's default form.
+    Prints its bytes, its fetches, and its errors against exact values, beside
+    those of the tables of the quantity. A refitted table is baked by the path of
+    its file, as its name is also that of the quantity. By default the domain is
+    that of the table, or of the quantity's default form.
     """
     from coefficients.files import require_writable_file, write_whole_bytes
     from coefficients.lut import bake as bake_lut

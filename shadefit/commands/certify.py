@@ -50,9 +50,10 @@ def certify(
 ) -> int:
     """Prove a bound of the largest error of tables on their whole domains.
 
-    This needs a C compiler, and a closed form of the exact value or bounds of it, as R has; other
-    quantities are 'sampled'. The exit status is 1 if a bound is refuted or not proven. With
-    --rounding, no exact value is needed, and exact/NAME is allowed too.
+    This needs a C compiler, and a closed form of the exact value or bounds of it,
+    as R has; other quantities are 'sampled'. The exit status is 1 if a bound is
+    refuted or not proven. With --rounding, no exact value is needed, and
+    exact/NAME is allowed too.
     """
     from coefficients.certify import RATIO, chosen, with_largest_error
     from coefficients.certify import certify as certify_entry

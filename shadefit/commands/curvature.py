@@ -70,8 +70,8 @@ def curvature(
 ) -> None:
     """Compute the curvature tensor of each vertex of a mesh, for skin.
 
-    The PLY file has the tensor in 1/mm, its tangent, and the tensor packed into four bytes. Without
-    -o and --picture only the summary is printed.
+    The PLY file has the tensor in 1/mm, its tangent, and the tensor packed into
+    four bytes. Without -o and --picture only the summary is printed.
     """
     from coefficients.files import OUTPUT, require_writable_file, write_whole_bytes
     from shadefit.curvature import curvature as curvature_of

@@ -28,7 +28,11 @@ SETTINGS = {"ignore_unknown_options": True}
 def evaluate(
     integral: Annotated[
         str,
-        typer.Argument(help="ps, g, q, r, velvet, or a quantity of -p FILE.", metavar="QUANTITY"),
+        typer.Argument(
+            help="A quantity of 'shadefit list', such as ps or skin-lobe-sphere, or one of "
+            "-p FILE.",
+            metavar="QUANTITY",
+        ),
     ],
     arguments: Annotated[
         list[str] | None,
@@ -69,6 +73,7 @@ def evaluate(
     Each argument of the integral is an option:
     --alpha, --theta-f, --theta-u and --phi of ps; --density and --cos-v of g;
     --density of q; --alpha and --theta-f of r; --asymmetry of velvet.
+    Without them, the options of another quantity are named.
     Angles are in radians, or in degrees with 'deg': 0.785, 0.785rad, 45deg.
 
     --points evaluates at many points, by the most exact method and by tables.

@@ -39,9 +39,10 @@ def encode(
 ) -> None:
     """Encode roughness and its direction as a texture, and print what compression costs.
 
-    The images are PNG, EXR or DDS files of one channel with linear values, not sRGB. A roughness
-    below 0.01 is raised to 0.01, as decoders do. Errors are total variations between the GGX lobe
-    of a texel and the one that a shader decodes. The shader code is that of decode/aniso-ENCODING.
+    The images are PNG, EXR or DDS files of one channel with linear values, not
+    sRGB. A roughness below 0.01 is raised to 0.01, as decoders do. Errors are
+    total variations between the GGX lobe of a texel and the one that a shader
+    decodes. The shader code is that of decode/aniso-ENCODING.
     """
     import numpy as np
 

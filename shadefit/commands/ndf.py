@@ -68,8 +68,8 @@ def ndf(
 ) -> None:
     """Fit the values of a distribution of normals at knots, by linear programs.
 
-    The mass of a fit is one. Prints the total variation and the largest error of the masking G1.
-    Fits whose knots miss the peak are refused.
+    The mass of a fit is one. Prints the total variation and the largest error of
+    the masking G1. Fits whose knots miss the peak are refused.
     """
     from coefficients.files import write_whole
     from coefficients.ndf_table import serialise_ndf

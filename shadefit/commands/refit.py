@@ -41,8 +41,8 @@ def refit(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            help="ps, g, q, r, velvet, all of these (the default), best/NAME, or quantities of "
-            "-p FILE (by default all of them).",
+            help="Quantities of 'shadefit list', such as ps or ggx-scale, all of them (the "
+            "default), best/NAME, or quantities of -p FILE (by default all of these).",
             autocompletion=complete_quantity,
         ),
     ] = None,

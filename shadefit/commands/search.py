@@ -31,7 +31,11 @@ MOST_JOBS = 256
 
 def search(
     quantity: Annotated[
-        str, typer.Argument(help="ps, g, q, r, or a quantity of -p FILE.", metavar="QUANTITY")
+        str,
+        typer.Argument(
+            help="A quantity of 'shadefit list', such as ps or ggx-scale, or one of -p FILE.",
+            metavar="QUANTITY",
+        ),
     ],
     budget: Annotated[
         int | None,

@@ -37,7 +37,7 @@ def draw_cloth() -> Figure:
     models = {titles.get(k, f"{k} model"): v for k, v in cloth.models.items()}
     images = {"exact": cloth.exact, **models}
     count = len(images) + len(MODELS)
-    figure = Figure(figsize=(count * _INCHES + 0.1, _INCHES + 0.75), layout="constrained")
+    figure = Figure(figsize=(count * _INCHES + 0.1, _INCHES + 0.95), layout="compressed")
     axes = figure.subplots(1, count)
     for axis, (name, image) in zip(axes, images.items(), strict=False):
         axis.imshow(to_srgb(image))

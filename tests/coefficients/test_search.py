@@ -1,5 +1,6 @@
 """A search among forms: what is tried, kept, refused and named."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -35,6 +36,18 @@ def test_the_errors_of_a_table_that_was_made_before_are_not_believed(tmp_path):
     errors = table.errors.model_copy(update={"off_grid": flattered})
     path.write_text(search.serialise(table.model_copy(update={"errors": errors})))
     assert searched._made_before([form]) == [None]
+
+
+def test_a_table_of_the_older_schema_that_was_made_before_is_not_fitted_again(tmp_path):
+    entry = resolve("best/q-9")
+    form, table = entry.require_fitted().form, entry.require_table()
+    searched = of(tmp_path, goal=Goal(**table.goal.model_dump()), budget=None)
+    data = json.loads(search.serialise(table)) | {"schema": "shadefit.table/1"}
+    del data["expression"]
+    (tmp_path / f"{searched.name_of(form)}.json").write_text(json.dumps(data))
+    (made,) = searched._made_before([form])
+    assert made is not None
+    assert made.coefficients == table.coefficients
 
 
 @pytest.mark.slow

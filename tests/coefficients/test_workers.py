@@ -110,6 +110,15 @@ def test_a_cluster_that_does_not_answer_is_one_line(monkeypatch):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1", "foo://host:1", ""])
+def test_an_address_of_no_cluster_is_refused_before_a_client_exists(address, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "Client", None)
+    with pytest.raises(ValueError, match="no dask scheduler at") as error:
+        list(Cluster(address).results(squared, [1]))
+    assert "\n" not in str(error.value)
+
+
 def test_a_cluster_without_dask_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ValueError, match=r"shadefit\[cluster\]"):
