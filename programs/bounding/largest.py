@@ -142,9 +142,9 @@ def bound_largest_slowly(
 ) -> LargestValue:
     """Do the same as `bound_largest` for the only output of a program, without a compiler.
 
-    `box` is (inputs, 2), and the `seeds` are places (n, inputs). It is about a hundred times slower.
-    A selection is bounded by the hull of both its cases, so that no proof may be found for a
-    program that has some.
+    `box` is (inputs, 2), and `seeds` are places (n, inputs). It is about a hundred times slower. A
+    selection is bounded by the hull of both its cases, so that no proof may be found for a program
+    that has some.
     """
     if not ratio > 1:
         raise ValueError(f"upper ratio {ratio:g}: allowed is a number above 1")

@@ -35,8 +35,8 @@ def mesh(
     """Return a mesh in mm of vertices (n, 3), in a unit of `UNITS`, and triangles (m, 3).
 
     Triangles are numbers of vertices. `normals` (n, 3) are normalised. Those that are missing, zero
-    or not finite are computed by `vertex_normals`. Raises ValueError for vertices that are not finite, for numbers of vertices
-    that do not exist, and for no triangle or too many.
+    or not finite are computed by `vertex_normals`. Raises ValueError for vertices that are not
+    finite, for numbers of vertices that do not exist, and for no triangle or too many.
     """
     if unit not in UNITS:
         raise ValueError(f"unit {unit!r} is not known: allowed are {', '.join(UNITS)}")
