@@ -18,9 +18,9 @@ def _processors() -> int:
 
 
 # References need float64 on the processor. With more threads of OpenBLAS, the order of sums, and so
-# their last digits, would depend on the machine. XLA reads the number of its threads from NPROC. One
-# thread adds in another order than several, but how many these are makes no difference: so a single
-# processor gets two threads. Pictures are written to files only.
+# their last digits, would depend on the machine. XLA reads the number of its threads from NPROC.
+# One thread adds in another order than several, but how many these are makes no difference: so a
+# single processor gets two threads. Pictures are written to files only.
 _SET = {
     "JAX_ENABLE_X64": "1",
     "JAX_PLATFORMS": "cpu",
