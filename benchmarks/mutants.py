@@ -60,9 +60,12 @@ class Mutant(NamedTuple):
 
 def changes(tree: ast.AST) -> Iterator[tuple[int, str]]:
     """Yield a line and what is changed there, while the tree is changed."""
-    # Types are read by people and by the type checker. They compute nothing.
-    hints = [getattr(node, k, None) for node in ast.walk(tree) for k in ("annotation", "returns")]
-    skipped = {id(part) for hint in hints if hint is not None for part in ast.walk(hint)}
+    # Types are read by people and by the type checker. They and `strict` compute nothing.
+    idle = [getattr(node, k, None) for node in ast.walk(tree) for k in ("annotation", "returns")]
+    idle += [
+        node for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "strict"
+    ]
+    skipped = {id(part) for hint in idle if hint is not None for part in ast.walk(hint)}
     for node in (each for each in ast.walk(tree) if id(each) not in skipped):
         for place, key, new, what in (*_of_node(node), *_of_parts(node)):
             old = place[key] if isinstance(place, list) else getattr(place, key)
