@@ -116,8 +116,8 @@ def _of_parts(node: ast.AST) -> Iterator[tuple]:
 def _can_be_left_out(node) -> bool:
     if isinstance(node, ast.Expr):
         return not isinstance(node.value, ast.Constant | ast.Yield)
-    subscripts = isinstance(node, ast.Assign) and not isinstance(node.targets[0], ast.Name)
-    return subscripts or isinstance(node, ast.AugAssign | ast.Raise | ast.Continue | ast.Break)
+    places = isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Subscript)
+    return places or isinstance(node, ast.AugAssign | ast.Raise | ast.Continue | ast.Break)
 
 
 def mutants(module: str) -> list[Mutant]:
