@@ -123,7 +123,7 @@ def test_slopes_leave_bounds_of_the_second_order(code):
             rounding = 1e-13 * (size + abs(slope * middle)) + 1e-15 * (1 + abs(middle))
             bend = max(abs(mpmath.diff(exact, x, 2, h=1e-8 * scale)) for x in (low, middle, high))
             # SINH and the like consist of several operations, whose slopes are as large.
-            second_order = 50 * (bend + abs(slope) + 1) * width**2
+            second_order = 20 * (bend + abs(slope) / scale + 1) * width**2
             assert plain[1] - plain[0] <= 1.01 * spread + second_order + rounding
             cut = bounds(f"SUB({code}, MUL(Y, X))", (low, high), (slope, slope))
             values = [
