@@ -32,6 +32,13 @@ def intervals(count: int, seed: int) -> list[tuple[float, float]]:
     return [(float(min(pair)), float(max(pair))) for pair in pairs]
 
 
+def pairs_of_intervals(seed: int) -> tuple[list, list]:
+    """Return first and second operands: those of `intervals`, and all pairs with simple ends."""
+    simple = list(itertools.combinations_with_replacement((-1.0, -1 / 3, 0.0, 1 / 3, 1.0), 2))
+    first, second = zip(*itertools.product(simple, simple), strict=True)
+    return [*intervals(150, seed), *first], [*intervals(150, seed + 1)[::-1], *second]
+
+
 def exactly(number: float) -> Fraction | float:
     return Fraction(number) if math.isfinite(number) else number
 
@@ -71,7 +78,7 @@ BINARY = {
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow
 def test_operations_of_two_operands_are_within_two_units_of_exact_fractions(operation):
     exact, ulps = BINARY[operation]
-    a, b = intervals(150, 1), intervals(150, 2)[::-1]
+    a, b = pairs_of_intervals(1)
     ranges = [exact([*map(Fraction, x)], [*map(Fraction, y)]) for x, y in zip(a, b, strict=True)]
     require(operation(operand(a), operand(b)), ranges, ulps)
 
@@ -105,7 +112,7 @@ def test_operations_of_one_operand_are_within_two_units_of_exact_fractions(opera
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_quotients_are_near_exact_fractions_and_unbounded_with_a_zero():
-    a, b = intervals(150, 4), intervals(150, 5)[::-1]
+    a, b = pairs_of_intervals(4)
     has_zero = np.array([low <= 0 <= high for low, high in b])
     inverse, quotient = iv.reciprocal(operand(b)), iv.divide(operand(a), operand(b))
     assert (inverse.lower[has_zero] == -np.inf).all() and (inverse.upper[has_zero] == np.inf).all()
