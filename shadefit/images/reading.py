@@ -89,7 +89,9 @@ def _read_png(data: bytes, name: str, max_edge: int) -> np.ndarray:
         again = _opened(PngImageFile, data, name, max_edge)
         again.tile = [tile._replace(args=raw.replace("16B", "16L"))]
         high, low = _decoded(file, file.mode), _decoded(again, file.mode)
-        return _scaled(high.shape, lambda rows: high[rows].astype(np.uint16) << 8 | low[rows], 65535)
+        return _scaled(
+            high.shape, lambda rows: high[rows].astype(np.uint16) << 8 | low[rows], 65535
+        )
     mode = _COLOURS.get(file.mode, file.mode)
     if file.mode == "P" and "transparency" in file.info:
         mode = "RGBA"

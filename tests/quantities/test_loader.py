@@ -125,9 +125,7 @@ def test_a_relative_path_gives_the_lines_too(tmp_path, monkeypatch):
 
 
 def test_the_notes_of_jax_are_no_part_of_an_error(tmp_path):
-    (tmp_path / "mine.py").write_text(
-        "import jax\njax.jit(lambda x: x if x > 0 else 1.0)(1.0)\n"
-    )
+    (tmp_path / "mine.py").write_text("import jax\njax.jit(lambda x: x if x > 0 else 1.0)(1.0)\n")
     with pytest.raises(ProblemFileError, match="line 2") as caught:
         load_problems(str(tmp_path / "mine.py"))
     assert "internal frames" not in str(caught.value)
