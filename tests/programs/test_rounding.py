@@ -73,6 +73,22 @@ def test_bounds_hold_and_are_not_vacuous(name):
 
 
 @needs_compiler
+def test_rounding_may_change_an_outcome_where_the_exact_one_is_certain():
+    """The sum with y has an error of 3e-5, so that either case is taken that far from x = ½.
+
+    A search divides there: then x² is below ¼ on the boxes on one side, and the case is certain.
+    """
+
+    def steep(x, y):
+        return jnp.where((x * x + y) - y < 0.25, 0.0, (x - 0.5) * 8.0)
+
+    found = bound(steep, [(0.25, 0.75), (1000, 1001)])
+    largest = measured(steep, [(0.4999, 0.5001), (1000, 1001)])
+    assert largest > 2e-4
+    assert found.upper is None or largest <= found.upper <= 4 * largest
+
+
+@needs_compiler
 def test_cancellation_makes_a_bound_large():
     """The sum with 1000 loses ten bits; without it, the bound is that of a few roundings."""
 
