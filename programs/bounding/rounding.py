@@ -32,6 +32,7 @@ from programs.operations import OPERATIONS
 from programs.program import Operand, Program, Step, is_value
 
 _KERNEL = Path(__file__).parent / "kernel" / "rounding.h"
+_MOST_CONDITIONS = 64
 _CONDITIONS = ("lt", "le", "gt", "ge", "eq", "ne")
 _COMPARED = {"lt": "lt2({0}, {1})", "le": "le2({0}, {1})", "eq": "eq2({0}, {1})"}
 _COMPARED |= {"gt": "lt2({1}, {0})", "ge": "le2({1}, {0})", "ne": "eq2({0}, {1})"}
@@ -95,7 +96,9 @@ def rounding_parts(
     """
     plan = _plan(program, model)
     error = "\n    ".join([*_inputs(plan, arguments, rounded_inputs), *_body(plan)])
-    code = [f"static jet error_of(boxes *K, const jet *x) {{\n    {error}\n}}"]
+    others = f"__COUNTER__ <= {_MOST_CONDITIONS - _conditions(program)}"
+    code = [f'_Static_assert({others}, "at most {_MOST_CONDITIONS} conditions");']
+    code += [f"static jet error_of(boxes *K, const jet *x) {{\n    {error}\n}}"]
     if _conditions(program):
         given = [*_inputs(plan, arguments, rounded_inputs), *_values(plan)]
         value = "\n    ".join([*given, *_exact_values(program)])
@@ -112,8 +115,8 @@ def _conditions(program: Program) -> int:
 
 
 def _plan(program: Program, model: RoundingModel) -> _Plan:
-    if _conditions(program) > 64:
-        raise ValueError(f"{program.name}: {_conditions(program)} conditions; allowed: at most 64")
+    if (count := _conditions(program)) > _MOST_CONDITIONS:
+        raise ValueError(f"{program.name}: {count} conditions; allowed: at most {_MOST_CONDITIONS}")
     first, errors, constants, wanted = len(program.inputs), {}, {}, set()
     last = first + len(program.steps)
     for number, step in enumerate(program.steps, first):
@@ -176,7 +179,8 @@ def _values(plan: _Plan) -> list[str]:
         operands = [operand_name(each, plan.leaf) for each in step.operands]
         if step.operation in _CONDITIONS:
             given = _COMPARED[step.operation].format(*(f"JET({each})" for each in operands))
-            decided = f"decide(K, {condition}, {given})"
+            # Conditions of the code that computes the arguments are numbered from zero.
+            decided = f"decide(K, {_MOST_CONDITIONS - 1 - condition}, {given})"
             decided = f"not1({decided})" if step.operation == "ne" else decided
             lines.append(f"truth v{number} = {decided};")
             condition += 1

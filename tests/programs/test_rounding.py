@@ -89,6 +89,22 @@ def test_rounding_may_change_an_outcome_where_the_exact_one_is_certain():
 
 
 @needs_compiler
+def test_conditions_of_the_arguments_are_independent_of_those_of_the_program():
+    """The first input is |x − ½|, by a condition; the program has a condition of its own."""
+    program = program_of(lambda d, y: jnp.where(y < 0.5, d - 0.25, 0.25 - d) * (y - 0.5), 2)
+    choice = "SELECT(LT(x[0], 0.5), SUB(0.5, x[0]), SUB(x[0], 0.5))"
+    parts = rounding_parts(program, IEEE, f"v[0] = {choice}; v[1] = x[1];", [False] * 2)
+    kernel = compile_kernel(parts, 2)
+    # Each combination of outcomes is on a part of this box, and none is on all of it.
+    _, upper, *_ = kernel.enclose(np.array([[0.25, 0.75], [0.25, 0.75]]))
+    corners = [
+        kernel.enclose(np.array([[x] * 2, [y] * 2])) for x in (0.25, 0.75) for y in (0.3, 0.7)
+    ]
+    assert upper >= max(high for _, high, *_ in corners) > 0
+    assert all("decide(K, 63," in part for part in parts[2:4])
+
+
+@needs_compiler
 def test_cancellation_makes_a_bound_large():
     """The sum with 1000 loses ten bits; without it, the bound is that of a few roundings."""
 
