@@ -78,6 +78,7 @@ OTHERS = ("FLOOR(X)", "CEIL(X)", "ABS(X)", "SQRT(X)", "POW(X, 0.4)", "MAX(X, Y)"
 CODE = [*(f"SUB({code}, MUL(Y, X))" for code in FUNCTIONS), *FUNCTIONS, *OTHERS]
 CODE += [*PAIRS, *(f"SUB({code}, {other})" for code, (_, other) in PAIRS.items())]
 CODE += [f"SELECT({code}, 1.0, 0.0)" for code in CONDITIONS]
+CODE += ["SUB(MAX(X, Y), X)", "SUB(MIN(X, Y), X)", "SUB(FLOOR(X), X)"]
 PLACES = {code: k for k, code in enumerate(dict.fromkeys(CODE))}
 
 
@@ -177,6 +178,27 @@ def test_a_condition_is_decided_where_it_holds_everywhere_or_nowhere(code):
         parts = [{a < b for a, b in pairs}, {a < 1 for a, _ in pairs}]
         if code[:2] not in ("AN", "OR") or max(map(len, parts)) == 1:
             assert (low, high) == (min(tried), max(tried))
+
+
+KINKS = {
+    # The box has its middle on one side of the kink; the range
+    ("SUB(ABS(X), MUL(Y, X))", (-0.3, 1.0), (1.0, 1.0)): (0, 0.6),
+    ("SUB(ABS(X), MUL(Y, X))", (-1.0, 0.3), (-1.0, -1.0)): (0, 0.6),
+    ("SUB(MAX(X, Y), X)", (0.0, 1.0), (0.4, 0.4)): (0, 0.4),
+    ("SUB(MAX(X, Y), X)", (0.0, 1.0), (0.6, 0.6)): (0, 0.6),
+    ("SUB(MIN(X, Y), X)", (0.0, 1.0), (0.4, 0.4)): (-0.6, 0),
+    ("SUB(MIN(X, Y), X)", (0.0, 1.0), (0.6, 0.6)): (-0.4, 0),
+    ("SUB(FLOOR(X), X)", (0.1, 1.0), (0.0, 0.0)): (-1, 0),
+}
+
+
+@pytest.mark.parametrize("case", KINKS, ids=str)
+def test_a_slope_on_one_side_of_a_kink_does_not_count_on_the_other(case):
+    code, *sides = case
+    low, high, *_ = bounds(code, *sides)
+    least, most = KINKS[case]
+    assert low <= least and most <= high
+    assert high - low <= 2.7
 
 
 INF = np.inf
