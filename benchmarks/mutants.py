@@ -189,7 +189,7 @@ def score(folder: Path, module: str, count: int, seed: int, limit: float) -> tup
     tests = CONFIGURATION["tests"][module]
     drawn = mutants(module)
     random.Random(seed).shuffle(drawn)
-    known = {(each["module"], each["line"], each["change"]) for each in CONFIGURATION["equal"]}
+    known = {tuple(each[:3]) for each in CONFIGURATION["equal"]}
     noticed = equal = 0
     for mutant in drawn[:count]:
         if (module, mutant.line, mutant.change) in known:

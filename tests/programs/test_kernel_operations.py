@@ -12,7 +12,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from programs.bounding.compiled import compile_kernel, compiler_missing
+from programs.bounding import compiled
+from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
 
 pytestmark = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
 
@@ -82,8 +83,7 @@ CODE += ["SUB(MAX(X, Y), X)", "SUB(MIN(X, Y), X)", "SUB(FLOOR(X), X)"]
 PLACES = {code: k for k, code in enumerate(dict.fromkeys(CODE))}
 
 
-@functools.cache
-def kernel():
+def compile_all() -> Kernel:
     cases = "\n".join(
         f"static jet f{k}(boxes *K, const jet *x) {{ return JET({code}); }}"
         for code, k in (
@@ -97,10 +97,19 @@ def kernel():
     return compile_kernel([cases, table, entry], 2)
 
 
+@functools.cache
+def kernel() -> Kernel:
+    return compile_all()
+
+
 def bounds(code: str, x: tuple[float, float], y: tuple[float, float] = (0.0, 0.0)):
     """Bound code on a box, and at its centre."""
-    kernel().library.choose_place(PLACES[code])
-    return kernel().enclose(np.array([x, y]))
+    return bounds_of(kernel(), code, x, y)
+
+
+def bounds_of(compiled_kernel: Kernel, code: str, x: tuple, y: tuple = (0.0, 0.0)):
+    compiled_kernel.library.choose_place(PLACES[code])
+    return compiled_kernel.enclose(np.array([x, y]))
 
 
 @pytest.mark.parametrize("code", FUNCTIONS)
@@ -269,3 +278,11 @@ def test_bounds_at_the_ends_of_domains(case):
     room = 1e-13 * max(abs(least), abs(most), 0.1)
     assert least - room <= low <= least + 1e-15 * abs(least)
     assert most - 1e-15 * abs(most) <= high <= most + room
+
+
+@pytest.mark.slow
+def test_a_processor_without_wide_vectors_has_the_same_bounds(monkeypatch):
+    monkeypatch.setattr(compiled, "_FASTER", ())
+    narrow = compile_all()
+    for code, *sides in (*AT_ENDS, *KINKS):
+        assert bounds_of(narrow, code, *sides) == bounds(code, *sides)
