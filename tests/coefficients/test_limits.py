@@ -241,11 +241,11 @@ def test_a_key_that_is_there_twice_is_named():
 @pytest.mark.parametrize("length", [200, 201, 5000])
 def test_a_long_message_is_cut_after_two_hundred_characters(length):
     def fail(_):
-        raise ValueError("x\n" * (length // 2) + "y" * (length % 2))
+        raise ValueError(("y" + "x\n" * length)[:length])
 
     with pytest.raises(ValueError) as caught:
         validated(fail, "{}", "a file")
-    shown = "x " * 99 + ("x…" if length > 200 else "x")
+    shown = "yx" + " x" * 99 + ("…" if length > 200 else "")
     assert str(caught.value) == f"a file is no JSON table: {shown}"
 
 
