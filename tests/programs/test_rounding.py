@@ -89,6 +89,18 @@ def test_rounding_may_change_an_outcome_where_the_exact_one_is_certain():
 
 
 @needs_compiler
+def test_values_near_the_largest_float32_are_not_bounded():
+    """Above 0.99 of it, rounding might give infinity. A part of a box that is above is enough."""
+    parts = rounding_parts(program_of(lambda x: -3.0 * x, 1), IEEE, "v[0] = x[0];", [False])
+    kernel = compile_kernel(parts, 1)
+    largest = float(np.finfo(np.float32).max)
+    for part, holds in ((0.985, True), (0.995, False), (1.005, False)):
+        for low, high in ((0.1, part), (-part, -0.1), (part, part), (-part, -part)):
+            found = kernel.enclose(np.array([[low, high]]) * largest / 3)
+            assert np.isfinite(found[:2]).all() == holds
+
+
+@needs_compiler
 def test_conditions_of_the_arguments_are_independent_of_those_of_the_program():
     """The first input is |x − ½|, by a condition; the program has a condition of its own."""
     program = program_of(lambda d, y: jnp.where(y < 0.5, d - 0.25, 0.25 - d) * (y - 0.5), 2)
