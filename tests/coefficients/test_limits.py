@@ -61,8 +61,8 @@ def row(length: int):
     return several(coefficients=[0.5] * length, coefficient_names=["c"] * length)
 
 
-def arguments(count: int):
-    names = [f"x{k}" for k in range(count)]
+def arguments(count: int, different: int | None = None):
+    names = [f"x{k % (different or count)}" for k in range(count)]
     place = dict.fromkeys(names, 0.5)
     one = {"rms": 0.1, "max": 0.2, "where": place, "points": 1}
     return several(
@@ -98,6 +98,7 @@ LIMITS = {
     "no coefficients": (row(0), rows(1, 0)),
     "fewest arguments": (arguments(1), arguments(0)),
     "arguments": (arguments(8), arguments(9)),
+    "arguments of different names": (arguments(2), arguments(2, different=1)),
     "steps": number("expression.steps", STEPS * 4096, STEPS * 4097),
     "operands": number(
         "expression.steps.0", ["select", "a", "b", 1.0], ["select", 1.0, 2.0, 3.0, 4.0]
