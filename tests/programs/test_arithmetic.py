@@ -133,6 +133,7 @@ def test_what_is_exact_is_not_rounded():
     assert iv.square(operand([(0, 1)])).upper == 1
     assert iv.subtract(one, one) == iv.multiply(zero, some) == iv.multiply(some, zero) == (0, 0)
     small = operand([(0, 1e-200)])
+    assert iv.square(small).lower == 0 == iv.square(operand([(-1, 1)])).lower
     assert iv.multiply(small, small).lower == 0 == iv.multiply(iv.negate(small), small).upper
     assert iv.multiply(iv.negate(small), iv.negate(small)).lower == 0
 
