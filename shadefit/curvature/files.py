@@ -1,6 +1,7 @@
 """Mesh files: OBJ, PLY and glTF are read through trimesh, and PLY with curvature is written."""
 
 import io
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from shading.curvature.packing import RANGE
 
 SUFFIXES = (".obj", ".ply", ".gltf", ".glb")
 LARGEST_FILE = 2 * 1024**3
+_VERTEX_0 = re.compile(rb"^[ \t]*f(?:[ \t]+[^ \t\r\n]+)*?[ \t]+[+-]?0+(?=[/\s]|\Z)", re.MULTILINE)
 
 
 def read_mesh(path: Path, unit: str) -> Mesh:
@@ -27,7 +29,11 @@ def read_mesh(path: Path, unit: str) -> Mesh:
         raise ValueError(f"unit {unit!r} is not known: allowed are {', '.join(UNITS)}")
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: allowed are files that end with {', '.join(SUFFIXES)}")
-    data = io.BytesIO(read_bounded(path, LARGEST_FILE))
+    content = read_bounded(path, LARGEST_FILE)
+    # trimesh takes vertex 0 for the last one.
+    if path.suffix.lower() == ".obj" and _VERTEX_0.search(content):
+        raise ValueError(f"{path}: a face has vertex 0: allowed are numbers from 1, or below 0")
+    data = io.BytesIO(content)
     try:
         import trimesh  # noqa: PLC0415
     except ImportError:
@@ -107,7 +113,9 @@ def _parts(scene: Any):
         part = scene.geometry[name]
         if not len(getattr(part, "faces", ())):
             continue
-        places = np.asarray(part.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]
+        # Vertices that are not finite are refused with all others.
+        with np.errstate(invalid="ignore", over="ignore"):
+            places = np.asarray(part.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]
         normals = np.zeros_like(places)
         # Normals of the file are in the cache; trimesh would compute others if asked for them.
         if "vertex_normals" in part._cache.cache:

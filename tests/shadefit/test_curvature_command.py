@@ -102,6 +102,25 @@ def test_bytes_keep_half_a_step():
         to_bytes(tensors, 0.0)
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("f 1 2 3", "f 0 1 2"), "a face has vertex 0: allowed are numbers from 1, or below 0"),
+        (("f 1 2 3", "f 1 2 0/1"), "a face has vertex 0"),
+        (("v 1 0 0", "v 1e400 0 0"), "vertex 1 is [inf, nan, nan]"),
+    ],
+)
+def test_an_obj_file_that_would_be_misread_is_refused_in_one_line(
+    tmp_path, capsys, recwarn, change, message
+):
+    path = tmp_path / "mesh.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1 2 3\n".replace(*change))
+    assert run(path, "--unit", "mm") == 2
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == 1
+    assert not recwarn.list
+
+
 def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
     (tmp_path / "secret.bin").write_bytes(bytes(36))
     inner = tmp_path / "inner"
