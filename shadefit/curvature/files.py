@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from coefficients.input_files import read_bounded
-from shadefit.curvature.meshes import UNITS, Mesh, mesh
+from shadefit.curvature.gltf_accessors import require_bounded_accessors
+from shadefit.curvature.meshes import LARGEST_COUNT, UNITS, Mesh, mesh
 from shadefit.curvature.tensors import Curvature
 from shadefit.curvature.vertex_bytes import to_bytes
 from shading.curvature.packing import RANGE
@@ -33,6 +34,8 @@ def read_mesh(path: Path, unit: str) -> Mesh:
     # trimesh takes vertex 0 for the last one.
     if path.suffix.lower() == ".obj" and _VERTEX_0.search(content):
         raise ValueError(f"{path}: a face has vertex 0: allowed are numbers from 1, or below 0")
+    if path.suffix.lower() in (".gltf", ".glb"):
+        require_bounded_accessors(content, path)
     data = io.BytesIO(content)
     try:
         import trimesh  # noqa: PLC0415
@@ -41,14 +44,16 @@ def read_mesh(path: Path, unit: str) -> Mesh:
             "meshes are read by trimesh, which is not installed: pip install 'shadefit[meshes]'"
         ) from None
     try:
-        scene = trimesh.load_scene(
-            data,
-            file_type=path.suffix.lower()[1:],
-            resolver=_beside(path.parent),
-            process=False,
-            skip_materials=True,
-        )
-        parts = list(_parts(scene))
+        # Vertices that are not finite are refused below.
+        with np.errstate(all="ignore"):
+            scene = trimesh.load_scene(
+                data,
+                file_type=path.suffix.lower()[1:],
+                resolver=_beside(path.parent),
+                process=False,
+                skip_materials=True,
+            )
+            parts = list(_parts(scene))
     # A damaged file makes trimesh raise errors of any type.
     except Exception as error:
         text = " ".join(str(error).split()) or type(error).__name__
@@ -108,14 +113,17 @@ def ply_bytes(
 
 def _parts(scene: Any):
     """Yield vertices, triangles and normals of the parts of a scene; no normals are zeros."""
+    total = 0
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         part = scene.geometry[name]
         if not len(getattr(part, "faces", ())):
             continue
-        # Vertices that are not finite are refused with all others.
-        with np.errstate(invalid="ignore", over="ignore"):
-            places = np.asarray(part.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]
+        # A part may be placed many times.
+        total += max(len(part.vertices), len(part.faces))
+        if total > LARGEST_COUNT:
+            raise ValueError(f"its parts have more than {LARGEST_COUNT} vertices or triangles")
+        places = np.asarray(part.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]
         normals = np.zeros_like(places)
         # Normals of the file are in the cache; trimesh would compute others if asked for them.
         if "vertex_normals" in part._cache.cache:
