@@ -1,117 +1,157 @@
 """How many small changes of the code do its tests notice? `python benchmarks/mutants.py`.
 
-A mutant is a copy of a module with one change: another comparison or operator, a constant that is
-larger by one, a negated condition, `and` for `or`, `min` for `max`. Its tests are run in a process
-of its own, in a copy of the project. If they pass, the mutant survives: the tests do not hold what
-was changed, or the change makes no difference. Mutants are drawn at random, the same ones for the
-same seed. Processes are forked from one that has imported JAX already, which needs a Unix.
+A mutant is a copy of a module with one change: another comparison, operator or constant, a negated
+condition, the other one of two ends, a bound that is not rounded outwards, a statement that is left
+out. Its tests are run in a process of its own, the nearest first, in a copy of the project. If they
+pass, the mutant survives: the tests do not hold what was changed, or the change makes no
+difference. `mutants.toml` has the tests of each module, and the changes that are known to make no
+difference. Mutants are drawn at random, the same ones for the same seed. Processes are forked from
+one that has imported the libraries already, which needs a Unix.
 """
 
 import argparse
 import ast
 import os
 import random
+import re
 import shutil
 import signal
 import sys
 import tempfile
 import time
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
+import hypothesis
 import jax  # noqa: F401  so that no child has to import it
+import mpmath  # noqa: F401
+import pydantic  # noqa: F401
 import pytest
 import scipy.optimize  # noqa: F401
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("shading", "integrals", "programs", "fitting", "quantities", "coefficients", "shadefit")
-# Name -> modules, their tests, and tests of these files that are too slow here
-GROUPS = {
-    "bounding": (
-        [f"programs/bounding/{name}.py" for name in ("arithmetic", "interval", "denominators")],
-        ["tests/programs/test_interval.py", "tests/programs/test_denominators.py"],
-        "",
-    ),
-    "json": (
-        [f"coefficients/{name}.py" for name in ("expression", "table_parts", "json_text")],
-        [f"tests/coefficients/test_{name}.py" for name in ("expression", "table", "json_text")],
-        "not survives_writing and not mutated_tables and not cut_and_patched",
-    ),
-}
-# A mutant may loop for ever: then it is noticed too.
-TIME_LIMIT = 180.0
+CONFIGURATION = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 _COMPARISONS = {
-    ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
-    ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
+    ast.Lt: (ast.LtE, ast.Gt), ast.LtE: (ast.Lt, ast.Gt), ast.Gt: (ast.GtE, ast.Lt),
+    ast.GtE: (ast.Gt, ast.Lt), ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,), ast.In: (ast.NotIn,),
+    ast.NotIn: (ast.In,), ast.Is: (ast.IsNot,), ast.IsNot: (ast.Is,),
 }  # fmt: skip
 _OPERATORS = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult,
     ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd, ast.And: ast.Or, ast.Or: ast.And,
+    ast.FloorDiv: ast.Mult, ast.Mod: ast.Mult,
 }  # fmt: skip
-_NAMES = {"min": "max", "max": "min", "any": "all", "all": "any", "minimum": "maximum"}
-_NAMES |= {"maximum": "minimum", "floor": "ceil", "ceil": "floor"}
+_OTHER = {a: b for pair in CONFIGURATION["pairs"] for a, b in (pair, pair[::-1])}
 
 
-def changes(tree: ast.AST) -> Iterator[tuple[str, str, ast.AST]]:
-    """Yield a place, what is changed there, and the tree while it is changed."""
-    hints = {
-        id(part) for node in ast.walk(tree) for hint in _hints(node) for part in ast.walk(hint)
-    }
-    for node in ast.walk(tree):
-        if id(node) in hints:
-            continue
-        where = f"line {getattr(node, 'lineno', '?')}"
-        if isinstance(node, ast.Compare):
-            for k, operator in enumerate(node.ops):
-                node.ops[k] = _COMPARISONS[type(operator)]()
-                yield where, f"{type(operator).__name__} -> {type(node.ops[k]).__name__}", tree
-                node.ops[k] = operator
-        elif isinstance(node, ast.BinOp | ast.BoolOp) and type(node.op) in _OPERATORS:
-            old = node.op
-            node.op = _OPERATORS[type(old)]()
-            yield where, f"{type(old).__name__} -> {type(node.op).__name__}", tree
-            node.op = old
-        elif isinstance(node, ast.Constant) and type(node.value) in (int, float):
-            old = node.value
-            node.value = old + 1
-            yield where, f"{old} -> {old + 1}", tree
-            node.value = old
-        elif isinstance(node, ast.If | ast.IfExp | ast.While):
-            old = node.test
-            node.test = ast.UnaryOp(ast.Not(), old)
-            yield where, "condition negated", tree
-            node.test = old
-        elif isinstance(node, ast.Name) and node.id in _NAMES:
-            old = node.id
-            node.id = _NAMES[old]
-            yield where, f"{old} -> {node.id}", tree
-            node.id = old
-        elif isinstance(node, ast.Attribute) and node.attr in _NAMES:
-            old = node.attr
-            node.attr = _NAMES[old]
-            yield where, f".{old} -> .{node.attr}", tree
-            node.attr = old
+class Mutant(NamedTuple):
+    """A changed module: its path, the number and text of the line, the change, the new text."""
+
+    module: str
+    number: int
+    line: str
+    change: str
+    source: str
 
 
-def _hints(node: ast.AST) -> list[ast.AST]:
-    # Types are read by people and by tests' type checker. They compute nothing.
-    found = [getattr(node, name, None) for name in ("annotation", "returns")]
-    return [each for each in found if isinstance(each, ast.AST)]
+def changes(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield a line and what is changed there, while the tree is changed."""
+    # Types are read by people and by the type checker. They and `strict` compute nothing.
+    idle = [getattr(node, k, None) for node in ast.walk(tree) for k in ("annotation", "returns")]
+    idle += [
+        node for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "strict"
+    ]
+    skipped = {id(part) for hint in idle if hint is not None for part in ast.walk(hint)}
+    for node in (each for each in ast.walk(tree) if id(each) not in skipped):
+        for place, key, new, what in (*_of_node(node), *_of_parts(node)):
+            old = place[key] if isinstance(place, list) else getattr(place, key)
+            put = place.__setitem__ if isinstance(place, list) else place.__setattr__
+            put(key, new)
+            yield getattr(old, "lineno", 0) or getattr(node, "lineno", 0), what
+            put(key, old)
 
 
-def mutants(modules: list[str]) -> list[tuple[str, str, str, str]]:
-    """Return all mutants of modules: the module, the place, the change and the source."""
-    found = []
-    for module in modules:
-        tree = ast.parse((ROOT / module).read_text(encoding="utf-8"))
-        for where, what, changed in changes(tree):
-            source = ast.unparse(ast.fix_missing_locations(changed))
-            found.append((module, where, what, source))
-    return found
+def _of_node(node: ast.AST) -> Iterator[tuple]:
+    """Yield what may be changed in a node: an object or list, a key, the new value, and a text."""
+    if isinstance(node, ast.Compare):
+        for k, old in enumerate(node.ops):
+            for new in _COMPARISONS[type(old)]:
+                yield node.ops, k, new(), f"{type(old).__name__} -> {new.__name__}"
+    elif isinstance(node, ast.BinOp | ast.BoolOp | ast.AugAssign) and type(node.op) in _OPERATORS:
+        new = _OPERATORS[type(node.op)]
+        yield node, "op", new(), f"{type(node.op).__name__} -> {new.__name__}"
+    elif isinstance(node, ast.Constant) and type(node.value) in (int, float, bool):
+        old = node.value
+        others = [not old] if old is True or old is False else [old + 1, old - 1]
+        for new in others if type(old) is not float else [old * 2, old / 2 if old else 1e-3]:
+            yield node, "value", new, f"{old} -> {new}"
+    elif isinstance(node, ast.If | ast.IfExp | ast.While):
+        yield node, "test", ast.UnaryOp(ast.Not(), node.test), "condition negated"
+    elif isinstance(node, ast.Name) and node.id in _OTHER and isinstance(node.ctx, ast.Load):
+        yield node, "id", _OTHER[node.id], f"{node.id} -> {_OTHER[node.id]}"
+    elif isinstance(node, ast.Attribute) and node.attr in _OTHER:
+        yield node, "attr", _OTHER[node.attr], f".{node.attr} -> .{_OTHER[node.attr]}"
 
 
-def passes(folder: Path, tests: list[str], left_out: str) -> bool:
+def _of_parts(node: ast.AST) -> Iterator[tuple]:
+    """Yield how the parts of a node may be replaced, as `_of_node` does."""
+    for name, value in ast.iter_fields(node):
+        for k, each in enumerate(value if isinstance(value, list) else [value]):
+            place, key = (value, k) if isinstance(value, list) else (node, name)
+            if isinstance(each, ast.UnaryOp):
+                yield place, key, each.operand, f"{type(each.op).__name__} removed"
+            elif isinstance(each, ast.Call) and ast.unparse(each.func).endswith("outward"):
+                exact = ast.Name("Interval" if isinstance(each.func, ast.Name) else "iv.Interval")
+                yield place, key, ast.Call(exact, each.args[:2], []), "not rounded"
+            elif isinstance(each, ast.Call) and ast.unparse(each.func).endswith("nextafter"):
+                yield place, key, each.args[0], "not rounded"
+            elif _can_be_left_out(each):
+                yield place, key, ast.copy_location(ast.Pass(), each), "left out"
+
+
+def _can_be_left_out(node) -> bool:
+    if isinstance(node, ast.Expr):
+        return not isinstance(node.value, ast.Constant | ast.Yield)
+    places = isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Subscript)
+    return places or isinstance(node, ast.AugAssign | ast.Raise | ast.Continue | ast.Break)
+
+
+def mutants(module: str) -> list[Mutant]:
+    """Return all mutants of a module. Changes that leave its text the same are none."""
+    text = (ROOT / module).read_text(encoding="utf-8")
+    lines, found = text.splitlines(), []
+    if module.endswith(".h"):
+        code = re.sub(r"/\*.*?\*/", lambda c: re.sub(r"[^\n]", "\0", c[0]), text, flags=re.S)
+        for pattern, new in CONFIGURATION["in_c"]:
+            for hit in re.finditer(pattern, code):
+                k = code.count("\n", 0, hit.start())
+                source = text[: hit.start()] + new + text[hit.end() :]
+                found.append((k + 1, f"{hit[0].strip()} -> {new.strip()}", source))
+    else:
+        tree = ast.parse(text)
+        found = [(number, what, ast.unparse(tree)) for number, what in changes(tree)]
+        original = ast.unparse(ast.parse(text))
+        found = [each for each in found if each[2] != original]
+    unlike = {source: (number, what) for number, what, source in reversed(found)}
+    return [Mutant(module, n, lines[n - 1].strip(), w, s) for s, (n, w) in unlike.items()][::-1]
+
+
+class Quick:
+    """A plugin of pytest: an example that fails is not made smaller."""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_collection(self):
+        phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+        quick = hypothesis.settings(hypothesis.settings.get_profile("repeatable"), phases=phases)
+        hypothesis.settings.register_profile("quick", quick)
+        hypothesis.settings.load_profile("quick")
+
+
+def passes(folder: Path, tests: list[str], limit: float) -> bool:
     """Run tests in a copy of the project, in a child process; return whether they passed."""
     child = os.fork()
     if child == 0:
@@ -121,63 +161,69 @@ def passes(folder: Path, tests: list[str], left_out: str) -> bool:
         quiet = os.open(os.devnull, os.O_RDWR)
         for stream in (0, 1, 2):
             os.dup2(quiet, stream)
-        given = ["-x", "-q", "-p", "no:cacheprovider", "-o", "addopts=--import-mode=importlib"]
-        given += ["-m", "not slow and not wheel", "-k", left_out, *tests]
-        os._exit(min(int(pytest.main(given)), 125))
-    end = time.monotonic() + TIME_LIMIT
+        given = [
+            "-x",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "--assert=plain",
+            "-o",
+            "addopts=--import-mode=importlib",
+        ]
+        given += ["-m", "not slow and not wheel", "-k", CONFIGURATION["but"], *tests]
+        os._exit(min(int(pytest.main(given, plugins=[Quick()])), 125))
+    end = time.monotonic() + limit
     while time.monotonic() < end:
         done, status = os.waitpid(child, os.WNOHANG)
         if done:
             return os.waitstatus_to_exitcode(status) == 0
-        time.sleep(0.05)
+        time.sleep(0.02)
+    # It may loop for ever: then it is noticed too.
     os.killpg(child, signal.SIGKILL)
     os.waitpid(child, 0)
     return False
 
 
-def score(name: str, count: int, seconds: float, seed: int) -> tuple[int, int, list[str]]:
-    """Run mutants of a group. Returns how many were noticed, how many were run, and the others."""
-    modules, tests, left_out = GROUPS[name]
-    tests = [each for each in tests if (ROOT / each).is_file()]
-    drawn = mutants(modules)
+def score(folder: Path, module: str, count: int, seed: int, limit: float) -> tuple[int, int, int]:
+    """Run mutants of a module. Return how many were noticed, and run, and are known as equal."""
+    tests = CONFIGURATION["tests"][module]
+    drawn = mutants(module)
     random.Random(seed).shuffle(drawn)
-    sys.dont_write_bytecode = True
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        for each in (*FOLDERS, "tests"):
-            shutil.copytree(ROOT / each, folder / each)
-        shutil.copy(ROOT / "pyproject.toml", folder)
-        if not passes(folder, tests, left_out):
-            raise SystemExit(f"{name}: the tests fail without any change")
-        noticed, survivors, end = 0, [], time.monotonic() + seconds
-        for module, where, what, source in drawn[:count]:
-            if time.monotonic() > end:
-                break
-            path = folder / module
-            original = path.read_bytes()
-            path.write_text(source, encoding="utf-8")
-            if passes(folder, tests, left_out):
-                survivors.append(f"{module}, {where}: {what}")
-                print(f"    survived: {survivors[-1]}", flush=True)
-            else:
-                noticed += 1
-            path.write_bytes(original)
-            shutil.copystat(ROOT / module, path)
-    return noticed, noticed + len(survivors), survivors
+    known = {(each["module"], each["line"], each["change"]) for each in CONFIGURATION["equal"]}
+    noticed = equal = 0
+    for mutant in drawn[:count]:
+        if (module, mutant.line, mutant.change) in known:
+            equal += 1
+            continue
+        (folder / module).write_text(mutant.source, encoding="utf-8")
+        if passes(folder, tests, limit):
+            print(f"    {module}:{mutant.number}: {mutant.change}    {mutant.line}", flush=True)
+        else:
+            noticed += 1
+    shutil.copy2(ROOT / module, folder / module)
+    return noticed, min(count, len(drawn)) - equal, equal
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=60, help="mutants of each group")
-    parser.add_argument("--seconds", type=float, default=1800.0, help="time limit of each group")
+    parser.add_argument("--count", type=int, default=20, help="mutants of each module")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("groups", nargs="*", default=list(GROUPS), choices=[*GROUPS, []])
+    parser.add_argument("--limit", type=float, default=120.0, help="seconds for the tests of one")
+    parser.add_argument("modules", nargs="*", default=list(CONFIGURATION["tests"]))
     options = parser.parse_args()
-    for name in options.groups:
-        total = len(mutants(GROUPS[name][0]))
-        print(f"{name}: {total} mutants, of which {min(options.count, total)} are drawn")
-        noticed, run, _ = score(name, options.count, options.seconds, options.seed)
-        print(f"{name}: {noticed} of {run} mutants are noticed ({100 * noticed / run:.0f} %)")
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        for each in (*FOLDERS, "tests", "examples", "docs"):
+            shutil.copytree(ROOT / each, folder / each)
+        shutil.copy(ROOT / "pyproject.toml", folder)
+        for module in options.modules:
+            if not passes(folder, CONFIGURATION["tests"][module], 600.0):
+                raise SystemExit(f"{module}: the tests fail without any change")
+            sys.dont_write_bytecode = True
+            noticed, run, equal = score(folder, module, options.count, options.seed, options.limit)
+            print(
+                f"{module}: {noticed} of {run} are noticed, {equal} make no difference", flush=True
+            )
 
 
 if __name__ == "__main__":

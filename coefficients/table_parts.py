@@ -126,6 +126,12 @@ class About(Part):
     arguments: Annotated[dict[Text, Identifier], _CLOSED, Field(min_length=1, max_length=8)]
     codomain: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
 
+    @model_validator(mode="after")
+    def _ordered(self):
+        if self.codomain is not None and not self.codomain[0] <= self.codomain[1]:
+            raise ValueError(f"codomain {self.codomain} is empty")
+        return self
+
 
 class DataFile(Part):
     """The data that a form was fitted to: the file's name and SHA-256, and how many rows it has.

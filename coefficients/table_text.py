@@ -45,5 +45,5 @@ def validated(validate: Callable[[dict[str, Any]], T], text: str, source: str) -
 
 def _one_line(text: str) -> str:
     """Shorten text and remove control codes, because it may come from a hostile file."""
-    shown = " ".join("".join(c if c.isprintable() else " " for c in text[:300]).split())
-    return shown if len(text) <= 200 else f"{shown[:200]}…"
+    shown = " ".join("".join(c if c.isprintable() else " " for c in text[:200]).split())
+    return shown if len(text) <= 200 else f"{shown}…"

@@ -22,6 +22,9 @@ class Batches:
 
     def evaluate(self, function: Callable):
         """Return the arrays (batch, …) that `function` returns for each batch, joined to (n, …)."""
+        if len(self._parts) == 1:
+            # Nothing has to be joined, and the arrays are those of the device.
+            return jax.tree.map(lambda x: np.asarray(x)[: self.count], function(self._parts[0]))
         parts = [function(each) for each in self._parts]
         return jax.tree.map(lambda *each: np.concatenate(each)[: self.count], *parts)
 

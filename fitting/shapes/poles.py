@@ -43,6 +43,19 @@ def quotient_of_poles(coefficients, terms: int, poles: int) -> tuple[np.ndarray,
     return above, below
 
 
+def among_poles(
+    own: tuple[int, int], most: tuple[int, int]
+) -> tuple[tuple[int, ...], tuple[float, ...]]:
+    """Return where the coefficients of a sum are among those of one with more terms and poles.
+
+    Both sums are given by their `terms` and `poles`. The second result has the coefficients of the
+    larger sum that make it the smaller one: zero, and one for the offset bₖ of a pole.
+    """
+    (terms, poles), (most_terms, most_poles) = own, most
+    of_poles = range(most_terms, most_terms + 2 * poles)
+    return (*range(terms), *of_poles), (0.0,) * most_terms + (0.0, 1.0) * most_poles
+
+
 def least_offset(coefficients, terms: int, poles: int) -> Array:
     """Return the least of all bₖ and 1. If it is positive, no pole x = −bₖ is at x ≥ 0."""
     offsets = [coefficients[terms + 2 * k + 1] for k in range(poles)]

@@ -6,7 +6,8 @@ derivative of the output by v5.
 
 A compiler may fuse a product and a sum, so that the product is not rounded in this sum, but it is
 where it is used otherwise. So the rounding of a product that is used repeatedly is not the same
-everywhere. Then s5 stands for the sum of the magnitudes of the derivatives by its uses.
+everywhere. Then s5 stands for the sum of the magnitudes of the derivatives by its uses. Processors
+also fuse the negative or the size of a product, so that these count as uses of the product.
 """
 
 from collections.abc import Callable, Sequence
@@ -48,6 +49,9 @@ _RULES: dict[str, tuple[str, ...]] = {
     ),
 }
 
+# Operations that only change the sign, which is part of a fused operation
+_SIGNS = ("neg", "abs")
+
 
 def derivative_lines(
     program: Program, wanted: set[int], leaf: Callable[[Operand], int | None]
@@ -59,18 +63,20 @@ def derivative_lines(
     not asked for. Raises ValueError for an operation without a rule.
     """
     first, lines = len(program.inputs), []
+    # For each value, the derivatives by its uses, and the same for the sum of magnitudes
     parts: dict[int, list[str]] = {}
+    sizes: dict[int, list[str]] = {}
     separate = used_separately(program)
     (output,) = program.outputs
     if is_value(output) and output in wanted:
-        parts[output] = ["JET(1.0)"]
+        parts[output], sizes[output] = ["JET(1.0)"], ["JET(1.0)"]
     for number in range(first + len(program.steps) - 1, first - 1, -1):
         if number not in wanted:
             continue
         step = program.steps[number - first]
         lines += _total(number, parts.get(number, ["JET(0.0)"]))
         if number in separate:
-            lines += _magnitudes(number, parts.get(number, []))
+            lines += _magnitudes(number, sizes.get(number, []))
         if step.operation not in _RULES:
             raise ValueError(f"rounding of {step.operation!r} is not bounded")
         operands = _named(step.operands, leaf)
@@ -80,6 +86,9 @@ def derivative_lines(
             place = operand if is_value(operand) else leaf(operand)
             if rule and place is not None and (place in wanted or not is_value(operand)):
                 parts.setdefault(place, []).append(rule.format(**names))
+                is_sign = number in separate and step.operation in _SIGNS
+                size = f"s{number}" if is_sign else parts[place][-1]
+                sizes.setdefault(place, []).append(size)
     for place, found in parts.items():
         lines += [] if place in wanted else _total(place, found)
     return lines
@@ -100,18 +109,33 @@ def _magnitudes(number: int, parts: Sequence[str]) -> list[str]:
 
 
 def used_separately(program: Program) -> set[int]:
-    """List the products of which a sum may use the exact value, and something else another one."""
-    first, uses = len(program.inputs), dict[int, list[str]]()
-    for step in program.steps:
-        for operand in filter(is_value, step.operands):
-            uses.setdefault(operand, []).append(step.operation)
-    return {
-        number
-        for number, step in enumerate(program.steps, first)
-        if step.operation == "mul"
-        and len(uses.get(number, [])) > 1
-        and {"add", "sub"} & set(uses[number])
-    }
+    """List the products of which a sum may use the exact value, and something else another one.
+
+    The list has the negatives and sizes of these products too.
+    """
+    first, found = len(program.inputs), set[int]()
+    for number, step in enumerate(program.steps, first):
+        uses = _uses(program, number) if step.operation == "mul" else []
+        if len(uses) > 1 and {"add", "sub"} & set(uses):
+            found.add(number)
+        if step.operation in _SIGNS and step.operands[0] in found:
+            found.add(number)
+    return found
+
+
+def _uses(program: Program, number: int) -> list[str]:
+    """List the operations that use a value, its negative, or its size; an output is one, too."""
+    found = ["output"] * _count(program.outputs, number)
+    for result, step in enumerate(program.steps, len(program.inputs)):
+        times = _count(step.operands, number)
+        found += _uses(program, result) if times and step.operation in _SIGNS else []
+        found += [step.operation] * times if step.operation not in _SIGNS else []
+    return found
+
+
+def _count(operands: Sequence[Operand], number: int) -> int:
+    # The constant 3.0 is not the value number 3.
+    return sum(is_value(each) and each == number for each in operands)
 
 
 def _named(operands: Sequence[Operand], leaf: Callable[[Operand], int | None]) -> list[str]:

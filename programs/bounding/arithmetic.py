@@ -13,9 +13,9 @@ import numpy as np
 
 # NumPy's elementary functions have errors of at most 4 units in the last place.
 _ELEMENTARY_ULPS = 4
-# A place of an extreme value that is this near an end of an interval, in units of π, is counted as
-# inside: rounding may have moved it.
-_NEAR = 1e-12
+# A place of an extreme value that is this near an end of an interval, in units of π or relative to
+# the end, is counted as inside: rounding may have moved it.
+_NEAR, _RELATIVELY_NEAR = 1e-12, 1e-15
 
 
 class Interval(NamedTuple):
@@ -175,12 +175,19 @@ def acos(a: Interval) -> Interval:
     return outward(np.arccos(high), np.arccos(low), _ELEMENTARY_ULPS)
 
 
+def _multiples_of_pi(a: Interval, offset: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first and the last whole number k with (k + offset)·π in a, or near its ends."""
+    low, high = a.lower / np.pi - offset, a.upper / np.pi - offset
+    below, above = (np.maximum(_NEAR, _RELATIVELY_NEAR * np.abs(each)) for each in (low, high))
+    return np.ceil(low - below), np.floor(high + above)
+
+
 def cos(a: Interval) -> Interval:
     """Bound cos a."""
     ends = np.cos(a.lower), np.cos(a.upper)
     lower, upper = outward(np.minimum(*ends), np.maximum(*ends), _ELEMENTARY_ULPS)
     # The cosine has a maximum at each even multiple of π and a minimum at each odd one.
-    first, last = np.ceil(a.lower / np.pi - _NEAR), np.floor(a.upper / np.pi + _NEAR)
+    first, last = _multiples_of_pi(a, 0.0)
     has_even = (last - first >= 1) | ((last == first) & (first % 2 == 0))
     has_odd = (last - first >= 1) | ((last == first) & (first % 2 != 0))
     return Interval(
@@ -197,7 +204,7 @@ def sin(a: Interval) -> Interval:
 def tan(a: Interval) -> Interval:
     """Bound tan a. The bounds are infinite if a may be an odd multiple of π/2."""
     bounds = _rising(np.tan)(a)
-    first, last = np.ceil(a.lower / np.pi - 0.5 - _NEAR), np.floor(a.upper / np.pi - 0.5 + _NEAR)
+    first, last = _multiples_of_pi(a, 0.5)
     has_pole = ~(last < first)
     return Interval(
         np.where(has_pole, -np.inf, bounds.lower), np.where(has_pole, np.inf, bounds.upper)

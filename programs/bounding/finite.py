@@ -6,7 +6,6 @@ import numpy as np
 
 from programs.bounding import interval
 from programs.bounding.arithmetic import Interval
-from programs.operations import OPERATIONS
 from programs.program import Operand, Program, is_value
 
 
@@ -28,9 +27,9 @@ def unbounded_values(program: Program, box: np.ndarray, proven: Mapping[int, flo
 
     for number, step in enumerate(program.steps, start=len(program.inputs)):
         bounds = interval.image_of(step.operation, [fetch(each) for each in step.operands])
-        if bounds is not None and OPERATIONS[step.operation].gives == "real":
+        if bounds is not None:
             lower = np.fmax(bounds.lower, proven.get(number, -np.inf))
-            if not (np.isfinite(lower).all() and np.isfinite(bounds.upper).all()):
+            if not np.isfinite([*lower, *bounds.upper]).all():
                 found.append(number)
                 lower, upper = np.fmax(lower, -largest), np.fmin(bounds.upper, largest)
                 bounds = Interval(lower, upper)

@@ -212,15 +212,15 @@ def _body(plan: _Plan) -> list[str]:
     lines = [*_values(plan), *derivative_lines(plan.program, plan.wanted, plan.leaf)]
     lines += ["jet e = JET(0.0);", "V tiny = all(0);"]
     first, separate = len(plan.program.inputs), used_separately(plan.program)
+    sizes = {number: f"{'s' if number in separate else 'd'}{number}" for number in plan.errors}
     for part in sorted({error.ulps for error in plan.errors.values() if error.ulps}):
         lines.append("{ jet s = JET(0.0);")
         for number, error in plan.errors.items():
             if error.ulps == part:
-                d = f"s{number}" if number in separate else f"d{number}"
-                lines.append(f"s = ADD(s, ABS(MUL({d}, p{number})));")
+                lines.append(f"s = ADD(s, ABS(MUL({sizes[number]}, p{number})));")
         lines.append(f"e = ADD(e, MUL({c_number(part * ULP)}, s)); }}")
     for number, error in plan.errors.items():
-        lines.append(f"tiny += size_of(d{number});")
+        lines.append(f"tiny += size_of({sizes[number]});")
         if error.ulps_of_argument:
             argument = operand_name(plan.program.steps[number - first].operands[0], plan.leaf)
             lines += [

@@ -12,8 +12,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from fitting.form import FittedForm, Form, Proofs, Stage
+from fitting.form import FittedForm, Form, Proofs, Stage, Wider
 from fitting.shapes.poles import (
+    among_poles,
     least_offset,
     pole_names,
     pole_starts,
@@ -33,6 +34,10 @@ LEAST_DENSITY = 1e-7
 # Poles are farther than this from x = 0, so that no precision of shaders turns one into a division
 # by zero.
 _LEAST_OFFSET = 5e-4
+
+# A search tries up to this many terms and poles. All its forms of a structure are evaluated by the
+# one that has the most of both.
+MOST_TERMS, MOST_POLES = 4, 2
 
 # The equation of each structure, in which {0} is the polynomial with the poles, and the variable of
 # that polynomial
@@ -81,7 +86,17 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
             positive=lambda c, _: least_offset(c, terms, poles) - _LEAST_OFFSET,
             quotient=functools.partial(_as_quotient, structure, terms, poles) if poles else None,
         ),
+        wider=_wider(structure, terms, poles),
     )
+
+
+def _wider(structure: str, terms: int, poles: int) -> Wider | None:
+    """Return the form with the most terms and poles; None for itself and for a larger one."""
+    most = MOST_TERMS, MOST_POLES
+    if (terms, poles) == most or terms > MOST_TERMS or poles > MOST_POLES:
+        return None
+    wide = pole_q(structure=structure, terms=MOST_TERMS, poles=MOST_POLES)
+    return Wider(wide, *among_poles((terms, poles), most))
 
 
 def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> FittedForm:
@@ -91,7 +106,16 @@ def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> 
     for the highest power, whose coefficient is 1.
     """
     above, below = quotient_of_poles(fitted.constants, terms, poles)
-    split = len(above)
+    form = _quotient(structure, len(above), poles)
+    return form.fitted(np.concatenate([above, below[:-1]]))
+
+
+@functools.cache
+def _quotient(structure: str, split: int, poles: int) -> Form:
+    """Return the form with a quotient of polynomials: `split` coefficients above, degree `poles`.
+
+    The highest power of the denominator has the coefficient 1.
+    """
 
     def value(c, density: Scalar) -> Array:
         def r(x):
@@ -100,19 +124,26 @@ def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> 
 
         return _surround(structure, jnp.asarray(density), r)
 
-    form = Form(
+    most = MOST_TERMS + poles
+    wider = None
+    if split < most:
+        places = (*range(split), *range(most, most + poles))
+        wider = Wider(_quotient(structure, most, poles), places, (0.0,) * (most + poles))
+    return Form(
         name="quotient-q",
         equation=f"{structure}, with a quotient of polynomials",
         reference=Q,
         axes=AXES,
         coefficient_names=[f"n{k}" for k in range(split)] + [f"d{k}" for k in range(poles)],
         stages=(Stage(value),),
+        wider=wider,
     )
-    return form.fitted(np.concatenate([above, below[:-1]]))
 
 
 def candidates() -> Iterator[Form]:
     """Yield the forms of Q that a search tries."""
-    for structure, terms, poles in itertools.product(STRUCTURES, range(5), range(3)):
+    for structure, terms, poles in itertools.product(
+        STRUCTURES, range(MOST_TERMS + 1), range(MOST_POLES + 1)
+    ):
         if terms + poles > (structure == "free") and not (structure == "log" and poles):
             yield pole_q(structure=structure, terms=terms, poles=poles)

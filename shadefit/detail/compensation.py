@@ -1,7 +1,7 @@
 """Sources that give a target with a detail, and how near the composed image comes to the target."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from shadefit.images.bc1 import (
     packed,
     require_blocks,
 )
-from shadefit.images.image import Image, image_of, require_channels
+from shadefit.images.image import Image, bands, image_of, require_channels
 
 ENCODERS = ("closed-loop", "quicktex")
 
@@ -46,6 +46,13 @@ def tiled(detail: Image, like: Image) -> np.ndarray:
     An alpha channel is left out. Raises ValueError if the size is no multiple of the detail's, or
     the numbers of channels differ.
     """
+    tile = _tile(detail, like)
+    (height, width), (tall, wide) = tile.shape[:2], like.pixels.shape[:2]
+    return np.tile(tile, (tall // height, wide // width, 1))
+
+
+def _tile(detail: Image, like: Image) -> np.ndarray:
+    """Return a detail's pixels in float64. Raises ValueError as `tiled` does."""
     colours = _colours(detail)
     (height, width), (tall, wide) = colours.shape[:2], like.pixels.shape[:2]
     if tall % height or wide % width:
@@ -53,11 +60,12 @@ def tiled(detail: Image, like: Image) -> np.ndarray:
             f"{detail.name}: {width}×{height} pixels: {like.name} has {wide}×{tall}, which is no "
             "multiple of it"
         )
-    if colours.shape[2] != _colours(like).shape[2]:
+    require_channels(like, 1, 3, 4)
+    if colours.shape[2] != min(like.pixels.shape[2], 3):
         raise ValueError(f"{detail.name} and {like.name} need the same number of colours")
     if colours.min() < 0 or colours.max() > 1:
         raise ValueError(f"{detail.name}: values outside [0, 1] cannot be blended")
-    return np.tile(colours, (tall // height, wide // width, 1))
+    return colours
 
 
 def _colours(image: Image) -> np.ndarray:
@@ -68,8 +76,14 @@ def _colours(image: Image) -> np.ndarray:
 
 def composed_image(source: Image, detail: Image, operator: Operator) -> Image:
     """Return the source with the tiled detail put onto it, in the source's colour space."""
-    pixels = operator.blend(_within(source), tiled(detail, source))
-    return image_of(np.clip(pixels, 0, 1), source.colour_space, "the composed image")
+    onto = _tile(detail, source)
+    pixels = np.empty((*source.pixels.shape[:2], onto.shape[2]), np.float32)
+    for rows in bands(len(pixels)):
+        part = _within(replace(source, pixels=source.pixels[rows]))
+        below = np.take(onto, range(rows.start, rows.stop), axis=0, mode="wrap")
+        beside = np.tile(below, (1, part.shape[1] // onto.shape[1], 1))
+        pixels[rows] = np.clip(operator.blend(part, beside), 0, 1)
+    return image_of(pixels, source.colour_space, "the composed image")
 
 
 def compensated_image(

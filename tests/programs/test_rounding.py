@@ -6,12 +6,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from programs.bounding.adjoints import used_separately
 from programs.bounding.compiled import compile_kernel, compiler_missing
 from programs.bounding.largest import LargestValue, bound_largest
 from programs.bounding.rounding import chained, rounding_parts
 from programs.bounding.rounding_model import IEEE, VULKAN, OperationError, RoundingModel
 from programs.functions import Function, Parameter
-from programs.program import Program, evaluate, interpret
+from programs.program import Program, Step, evaluate, interpret
 from programs.tracing.tracer import trace
 
 needs_compiler = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
@@ -115,6 +116,44 @@ def test_terms_of_higher_order_are_in_the_bound():
     )[0]
     assert largest - 1 == pytest.approx(1.05**15 - 1) and largest - 1 > 15 * part
     assert largest - 1 <= found.upper <= 2 * (largest - 1)
+
+
+@needs_compiler
+def test_the_size_of_a_product_may_be_fused_with_a_sum_too():
+    """|x·y| + c is rounded once, and max(x·y, 0) too; otherwise the roundings of x·y cancel."""
+    c = float(np.float32(0.03))
+    found = bound(lambda x, y: (jnp.abs(x * y) + c) - jnp.maximum(x * y, 0.0), [(0.99, 1)] * 2)
+    x, y = np.random.default_rng(2).uniform(0.99, 1, (2, 100_000)).astype(np.float32).astype(float)
+    total, product = (x * y + c).astype(np.float32), (x * y).astype(np.float32)
+    error = np.abs((total - product).astype(float) - c).max()
+    assert error > 1.4 * 2.0**-24
+    assert error <= found.upper <= 2.2 * error
+
+
+def test_products_whose_uses_are_rounded_apart_are_found():
+    """Numbers of steps: 2 is the product."""
+    cases: dict[tuple, set[int]] = {
+        (("mul", 0, 1), ("add", 2, 0)): set(),
+        (("mul", 0, 1), ("add", 2, 2)): {2},
+        (("mul", 0, 1), ("add", 2, 0), ("exp", 2)): {2},
+        (("mul", 0, 1), ("sub", 0, 2), ("mul", 2, 3)): {2},
+        (("mul", 0, 1), ("exp", 2), ("div", 2, 3)): set(),
+        (("mul", 0, 1), ("exp", 2), ("add", 3, 2.0)): set(),
+        (("div", 0, 1), ("add", 2, 0), ("exp", 2)): set(),
+        # By its negative or its size, and by the negative of its size
+        (("mul", 0, 1), ("neg", 2), ("add", 3, 0), ("exp", 2)): {2, 3},
+        (("mul", 0, 1), ("abs", 2), ("sub", 3, 0), ("exp", 3)): {2, 3},
+        (("mul", 0, 1), ("abs", 2), ("neg", 3), ("add", 4, 0), ("max", 2, 0.5)): {2, 3, 4},
+        (("mul", 0, 1), ("abs", 2), ("add", 3, 0)): set(),
+        (("mul", 0, 1), ("neg", 2), ("exp", 3), ("exp", 2)): set(),
+    }
+    for steps, expected in cases.items():
+        listed = tuple(Step(operation, tuple(operands)) for operation, *operands in steps)
+        program = Program("Example", ("x", "y"), listed, (len(steps) + 1,))
+        assert used_separately(program) == expected, steps
+    # An output is a use.
+    steps = (Step("mul", (0, 1)), Step("add", (2, 0)))
+    assert used_separately(Program("Example", ("x", "y"), steps, (2, 3))) == {2}
 
 
 @needs_compiler
