@@ -78,6 +78,14 @@ def residuals(
         c[free] = z
         return c
 
+    all_free, unweighted = bool(free.all()), bool(np.all(scale == 1))
+
+    def chosen(columns):
+        return columns if all_free else columns[:, free]
+
+    def weighted(columns, rows):
+        return columns if unweighted else columns * scale[rows, None]
+
     # The exact value may itself be an end: the distance is at most half of the exact value's own.
     lower, upper = form.reference.codomain
     low = lower + np.minimum(_ROOM, (exact - lower) / 2)
@@ -95,9 +103,9 @@ def residuals(
     room_slopes = slopes if guarded is points else SlopesAt(form, guarded)
     return Residuals(
         lambda z: (at.values(whole(z)) - exact) * scale,
-        lambda z, rows: slopes.values(whole(z), rows)[:, free] * scale[rows, None],
+        lambda z, rows: weighted(chosen(slopes.values(whole(z), rows)), rows),
         lambda z: at_guarded.rooms(whole(z)),
-        lambda z, rows: room_slopes.rooms(whole(z), rows)[:, free],
+        lambda z, rows: chosen(room_slopes.rooms(whole(z), rows)),
         least,
         most,
         exact,

@@ -178,8 +178,8 @@ def acos(a: Interval) -> Interval:
 def _multiples_of_pi(a: Interval, offset: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and the last whole number k with (k + offset)·π in a, or near its ends."""
     low, high = a.lower / np.pi - offset, a.upper / np.pi - offset
-    below, above = (np.maximum(_NEAR, _RELATIVELY_NEAR * np.abs(each)) for each in (low, high))
-    return np.ceil(low - below), np.floor(high + above)
+    room = np.maximum(_NEAR, _RELATIVELY_NEAR * np.maximum(np.abs(low), np.abs(high)))
+    return np.ceil(low - room), np.floor(high + room)
 
 
 def cos(a: Interval) -> Interval:
