@@ -110,7 +110,7 @@ CASES = [
 ]
 
 
-# The forms of these have no operation that the others lack. All are run in C by default, below.
+# The forms of these have no operation that the others lack. The tables are run in C below.
 _SLOW = {key: [pytest.mark.slow] for key in ("g", "q", "r", "velvet", "exact/g", "exact/q")}
 
 
