@@ -57,6 +57,11 @@ def require_writable_file(path: Path) -> None:
         require_writable(Path(os.path.realpath(path)).parent if path.is_symlink() else path.parent)
 
 
+def is_standard_output(path: Path) -> bool:
+    """Return whether a path stands for standard output: '-', /dev/stdout, or a link to them."""
+    return path == OUTPUT or _open_file(path) == _STDOUT
+
+
 def write_whole(path: Path, text: str) -> None:
     """Write a text file completely or not at all (see `write_whole_bytes`)."""
     write_whole_bytes(path, text.encode())

@@ -28,6 +28,20 @@ class NdfErrors(Part):
     directions: Annotated[int, Field(ge=1)]
 
 
+def _require_profile(part: Any) -> Any:
+    """Return a part that has `knots` and `values`. Raises ValueError if they are no NDF."""
+    knots, values = part.knots, part.values
+    if len(knots) != len(values):
+        raise ValueError(f"{len(knots)} knots and {len(values)} values")
+    if any(not low < high for low, high in pairwise(knots)):
+        raise ValueError("knots: expected are increasing angles")
+    if knots[0] != 0 or abs(knots[-1] - math.pi / 2) > 1e-12:
+        raise ValueError("knots: expected are angles from 0 to π/2")
+    if min(values) < 0 or max(values) == 0:
+        raise ValueError("values: expected are numbers ≥ 0 that are not all zero")
+    return part
+
+
 class NdfTable(Part):
     """An isotropic NDF: `values`, per steradian, at the polar angles `knots`, in radians.
 
@@ -45,10 +59,7 @@ class NdfTable(Part):
     errors: NdfErrors
     command: Text
 
-    @model_validator(mode="after")
-    def _ordered(self):
-        _require_profile(self.knots, self.values)
-        return self
+    _is_profile = model_validator(mode="after")(_require_profile)
 
 
 class BlendProfile(Part):
@@ -58,10 +69,7 @@ class BlendProfile(Part):
     values: Values
     mass: Positive
 
-    @model_validator(mode="after")
-    def _ordered(self):
-        _require_profile(self.knots, self.values)
-        return self
+    _is_profile = model_validator(mode="after")(_require_profile)
 
 
 class NdfBlendTable(Part):
@@ -79,18 +87,6 @@ class NdfBlendTable(Part):
     y: BlendProfile
     errors: NdfErrors | None
     command: Text
-
-
-def _require_profile(knots: list[float], values: list[float]) -> None:
-    """Raise ValueError for knots and values that are no NDF."""
-    if len(knots) != len(values):
-        raise ValueError(f"{len(knots)} knots and {len(values)} values")
-    if any(not low < high for low, high in pairwise(knots)):
-        raise ValueError("knots: expected are increasing angles")
-    if knots[0] != 0 or abs(knots[-1] - math.pi / 2) > 1e-12:
-        raise ValueError("knots: expected are angles from 0 to π/2")
-    if min(values) < 0 or max(values) == 0:
-        raise ValueError("values: expected are numbers ≥ 0 that are not all zero")
 
 
 def serialise_ndf(table: NdfTable | NdfBlendTable) -> str:

@@ -9,8 +9,9 @@ The names below are imported when they are first used, so that a program that ne
 `fitting.goal` does not wait for the import of JAX.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from programs.public_names import import_when_used
 
 if TYPE_CHECKING:
     from fitting.errors import Errors as Errors
@@ -26,18 +27,13 @@ if TYPE_CHECKING:
     from fitting.points.domain import Domain as Domain
     from fitting.points.domain import common_domain as common_domain
 
-_HOMES = {
-    "fitting.errors": ("Errors", "form_values", "judge"),
-    "fitting.fit": ("Fit",),
-    "fitting.form": ("FittedForm", "Form", "Proofs", "Stage", "plain_form"),
-    "fitting.goal": ("Goal",),
-    "fitting.points.domain": ("Domain", "common_domain"),
-}
-_MODULES = {name: module for module, names in _HOMES.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
+__getattr__, __dir__, __all__ = import_when_used(
+    __name__,
+    {
+        "fitting.errors": ("Errors", "form_values", "judge"),
+        "fitting.fit": ("Fit",),
+        "fitting.form": ("FittedForm", "Form", "Proofs", "Stage", "plain_form"),
+        "fitting.goal": ("Goal",),
+        "fitting.points.domain": ("Domain", "common_domain"),
+    },
+)

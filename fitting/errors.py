@@ -81,6 +81,9 @@ climb = HillClimbing()
 
 def form_values(fitted: FittedForm, points: np.ndarray) -> np.ndarray:
     """Return a form's values (n,) at points (n, axes)."""
+    wider = fitted.form.wider
+    if wider is not None:
+        fitted = wider.form.fitted(wider.coefficients(fitted.constants.ravel()))
     return np.asarray(in_batches(functools.partial(_apply, fitted), points, _BATCH))
 
 

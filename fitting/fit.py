@@ -114,7 +114,13 @@ def fit(
             return _on_grid(form, found, nodes)
         start = np.asarray(found.coefficients).ravel()
     solver = exchange or form.scattered_solver or Exchange()
-    found = solver.fit(form, goal, measure, start, progress, counterexamples)
+    try:
+        found = solver.fit(form, goal, measure, start, progress, counterexamples)
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            f"{form.name}: its coefficients cannot be found: allowed is a form whose values are "
+            "finite on its whole domain"
+        ) from None
     progress(f"{form.name}: errors and certificate")
     return _scattered(form, found, goal, measure)
 

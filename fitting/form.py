@@ -81,6 +81,30 @@ class Proofs:
 
 
 @dataclass(frozen=True, eq=False)
+class Wider:
+    """A form that has another one as the special case in which some coefficients are fixed.
+
+    Fits evaluate it in place of the other one, so that one compiled program serves all its special
+    cases, and is made for speed (fitting/solvers/at_points.py). Its values must be the same to the
+    last digit, with their derivatives: a fixed coefficient is a zero or a one whose term or factor
+    changes nothing. The numbers that must stay positive must be the same too.
+
+    * `form`: the wider form. `fixed`: its flat coefficients; those at `places` do not count.
+    * `places`: where the flat coefficients of the other form are among them.
+    """
+
+    form: "Form"
+    places: tuple[int, ...]
+    fixed: tuple[float, ...]
+
+    def coefficients(self, c: np.ndarray) -> np.ndarray:
+        """Return the flat coefficients of the wider form for those of the other one."""
+        whole = np.array(self.fixed)
+        whole[list(self.places)] = c
+        return whole
+
+
+@dataclass(frozen=True, eq=False)
 class Form:
     """A function that approximates a quantity, with coefficients that have no values yet.
 
@@ -95,6 +119,7 @@ class Form:
     * `shape`: the arguments that make this form in its family; None for a form of no family.
     * `solver`: fits the form on a grid (`fitting/solvers`); None stands for the general `OnGrid`.
     * `scattered_solver`: fits the form to scattered points; None stands for the general `Exchange`.
+    * `wider`: a form that is evaluated in place of this one, see `Wider`; None if there is none.
     * `printed`: where the equation is printed, such as 'Eq. (3)'; empty if nowhere.
     * `has_least_error`: whether to look for a lower bound of the largest error. There is one only
       for a form that is a quotient of linear functions of its coefficients.
@@ -115,6 +140,7 @@ class Form:
     scattered_solver: Any = None
     has_least_error: bool = True
     printed: str = ""
+    wider: Wider | None = None
 
     @property
     def coefficient_shape(self) -> tuple[int, ...]:

@@ -1,14 +1,11 @@
 """The goal of a fit: what it minimises, its constraints, and the words that name them."""
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 Norm = Literal["l2", "linf"]
 Side = Literal["both", "below", "above"]
 Rounding = Literal["none", "float32", "float16"]
-NORMS: tuple[Norm, ...] = get_args(Norm)
-SIDES: tuple[Side, ...] = get_args(Side)
-ROUNDINGS: tuple[Rounding, ...] = get_args(Rounding)
 
 
 @dataclass(frozen=True)

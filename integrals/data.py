@@ -118,12 +118,6 @@ def table(
     return replace(found, source=path.name, digest=hashlib.sha256(content).hexdigest())
 
 
-def column_names(file: str | Path) -> list[str]:
-    """Return the names of a file's columns. Raises ValueError as `table` does."""
-    path = Path(file)
-    return list(_READERS[path.suffix.lower()](_content(path), path))
-
-
 def _located(path: Path) -> Path:
     script = getattr(sys.modules["__main__"], "__file__", None)
     folder = PROBLEM_FOLDER.get() or (Path(script).parent if script else Path())

@@ -59,6 +59,8 @@ def require_values(function: Callable, arguments: Sequence[np.ndarray], names: S
         shape = np.shape(found)[1:] if hasattr(found, "shape") else type(found).__name__
         raise ValueError(f"{label(function)} returns {shape}: expected is a scalar")
     values = np.asarray(found)
+    if np.iscomplexobj(values):
+        raise ValueError(f"{label(function)} returns complex numbers: expected are real ones")
     for index in np.flatnonzero(np.isnan(values)):
         point = describe(names, [each[index] for each in arguments])
         raise ValueError(f"{label(function)} is NaN at {point}")

@@ -13,8 +13,9 @@ The names below are the public ones. They are imported when they are first used,
 program that needs only `programs.rounded_text` waits neither for JAX nor for NumPy.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from programs.public_names import import_when_used
 
 if TYPE_CHECKING:
     from programs.bounding.branch_and_bound import Bounds as Bounds
@@ -56,43 +57,38 @@ if TYPE_CHECKING:
     from programs.toolchains.verification import check as check
     from programs.tracing.tracer import trace as trace
 
-_HOMES = {
-    "programs.bounding.branch_and_bound": ("Bounds", "BranchAndBound"),
-    "programs.bounding.denominators": ("DenominatorBound", "bound_below", "prove_no_pole"),
-    "programs.cost": ("KINDS", "Cost", "count_operations"),
-    "programs.functions": (
-        "Function",
-        "Parameter",
-        "Record",
-        "function",
-        "group_inputs",
-        "input_names",
-    ),
-    "programs.languages": ("LANGUAGES", "Language", "language", "precision_of"),
-    "programs.operations": ("OPERATIONS",),
-    "programs.precision": ("PRECISIONS",),
-    "programs.printing.printer": ("write_source",),
-    "programs.program": (
-        "Program",
-        "Step",
-        "evaluate",
-        "interpret",
-        "is_value",
-        "reachable_values",
-        "subprogram",
-    ),
-    "programs.toolchains.difference": ("Difference",),
-    "programs.toolchains.process": ("ToolchainError",),
-    "programs.toolchains.registry": ("toolchain",),
-    "programs.toolchains.throughput": ("Throughput", "measure_throughput"),
-    "programs.toolchains.verification": ("CallSequence", "Check", "Trial", "check"),
-    "programs.tracing.tracer": ("trace",),
-}
-_MODULES = {name: module for module, names in _HOMES.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
+__getattr__, __dir__, __all__ = import_when_used(
+    __name__,
+    {
+        "programs.bounding.branch_and_bound": ("Bounds", "BranchAndBound"),
+        "programs.bounding.denominators": ("DenominatorBound", "bound_below", "prove_no_pole"),
+        "programs.cost": ("KINDS", "Cost", "count_operations"),
+        "programs.functions": (
+            "Function",
+            "Parameter",
+            "Record",
+            "function",
+            "group_inputs",
+            "input_names",
+        ),
+        "programs.languages": ("LANGUAGES", "Language", "language", "precision_of"),
+        "programs.operations": ("OPERATIONS",),
+        "programs.precision": ("PRECISIONS",),
+        "programs.printing.printer": ("write_source",),
+        "programs.program": (
+            "Program",
+            "Step",
+            "evaluate",
+            "interpret",
+            "is_value",
+            "reachable_values",
+            "subprogram",
+        ),
+        "programs.toolchains.difference": ("Difference",),
+        "programs.toolchains.process": ("ToolchainError",),
+        "programs.toolchains.registry": ("toolchain",),
+        "programs.toolchains.throughput": ("Throughput", "measure_throughput"),
+        "programs.toolchains.verification": ("CallSequence", "Check", "Trial", "check"),
+        "programs.tracing.tracer": ("trace",),
+    },
+)

@@ -7,6 +7,7 @@ folder, not from an environment variable, and never because a table's JSON says 
 import importlib.util
 import sys
 import traceback
+from contextlib import redirect_stdout
 from pathlib import Path
 
 from integrals.data import PROBLEM_FOLDER
@@ -18,6 +19,7 @@ _PACKAGES = (
     *("shading", "integrals", "programs", "fitting", "quantities", "coefficients"),
     "shadefit",
 )
+_JAX_NOTE = "JAX has removed its internal frames"
 # What each file declared when it was last loaded, and how the file was named then. Loading it again
 # replaces this.
 _LOADED: dict[Path, tuple[str, list[Problem]]] = {}
@@ -39,7 +41,8 @@ def load_problems(named: str) -> list[Problem]:
     path = Path(f"{file}.py" if wanted else named)
     if path.suffix != ".py" or not path.is_file():
         raise ValueError(f"{path} is no problem file: allowed is a Python file, FILE.py[:NAME]")
-    found = {problem.name: problem for problem in _declared(path)}
+    # The interpreter names files by absolute paths.
+    found = {problem.name: problem for problem in _declared(path.absolute())}
     if not found:
         raise ValueError(f"{path} declares no quantity: it needs a module-level shadefit.Problem")
     if wanted and wanted not in found:
@@ -73,9 +76,12 @@ def _declared(path: Path) -> list[Problem]:
     sys.modules[name] = module
     token = PROBLEM_FOLDER.set(path.parent)
     try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
+        # Standard output is for what the command writes.
+        with redirect_stdout(sys.stderr):
+            spec.loader.exec_module(module)
+    # A file that calls sys.exit would end the command as if it had done its work.
+    except (Exception, SystemExit, GeneratorExit) as error:
+        sys.modules.pop(name, None)
         line = _line_of_misuse(error, path)
         if line is None:
             raise ProblemFileError(_own_traceback(error, path)) from None
@@ -101,7 +107,7 @@ def _require_published_forms(problem: Problem, path: Path) -> None:
             )
 
 
-def _line_of_misuse(error: Exception, path: Path) -> int | None:
+def _line_of_misuse(error: BaseException, path: Path) -> int | None:
     """Return the line of a file that called this project wrongly; None for an error of its own.
 
     This project reports misuse by ValueError, or RuntimeError.
@@ -115,10 +121,14 @@ def _line_of_misuse(error: Exception, path: Path) -> int | None:
     return None
 
 
-def _own_traceback(error: Exception, path: Path) -> str:
+def _own_traceback(error: BaseException, path: Path) -> str:
     """Write an error with the lines of the file that led to it, without those of others."""
     own = [
         each for each in traceback.extract_tb(error.__traceback__) if Path(each.filename) == path
     ]
     lines = traceback.format_list(own) if own else [f'  File "{path}"\n']
+    # JAX adds a note to every error: that its own frames are left out.
+    notes = vars(error).get("__notes__")
+    if isinstance(notes, list):
+        notes[:] = [each for each in notes if _JAX_NOTE not in str(each)]
     return "".join([*lines, *traceback.format_exception_only(error)]).rstrip()

@@ -27,8 +27,9 @@ evaluated: `jax.config.update("jax_enable_x64", True)`.
   `write_source` returns the code of any `function` with `Parameter`s, in one of the `LANGUAGES`.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from programs.public_names import import_when_used
 
 if TYPE_CHECKING:
     from coefficients.catalogue import Entry as Entry
@@ -91,46 +92,37 @@ if TYPE_CHECKING:
         fit_with_shared_denominator as fit_with_shared_denominator,
     )
 
-_HOMES = {
-    "coefficients.catalogue": ("Entry", "load", "resolve"),
-    "coefficients.exported_code": ("exported_values", "source_file"),
-    "coefficients.record": ("table_of",),
-    "coefficients.table": ("Table",),
-    "fitting": ("Fit", "FittedForm", "Form", "Goal", "Stage", "plain_form"),
-    "fitting.fit": ("fit",),
-    "fitting.shapes.monomial_sums": ("powers",),
-    "integrals": (
-        *("PS", "G", "Q", "R", "VELVET"),
-        *("Axis", "Estimate", "Reference", "Sampling"),
-    ),
-    "integrals.data": ("samples", "table"),
-    "integrals.reference": ("leg",),
-    "integrals.reference_of_source": ("make_reference",),
-    "integrals.sources": (*("closed_form", "hemisphere", "monte_carlo", "quadrature", "sphere"),),
-    "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
-    "quantities": ("problem", "problems", "register"),
-    "quantities.calling_convention": ("Argument", "CallingConvention"),
-    "quantities.piecewise.blend_fit": ("BlendFit", "fit_blend"),
-    "quantities.piecewise.fit": ("NdfFit", "fit_ndf"),
-    "quantities.piecewise.targets": ("analytic_ndf", "measured_ndf", "named_ndf"),
-    "quantities.plot_hints": ("AxisHint", "PlotHints"),
-    "quantities.problem": ("Published",),
-    "shadefit.declaration": ("Problem",),
-    "shadefit.many_points": ("estimates", "values"),
-    "shadefit.result": ("Result",),
-    "shadefit.shared_denominator": ("fit_with_shared_denominator",),
-}
-_MODULES = {name: module for module, names in _HOMES.items() for name in names}
-
-__all__ = tuple(_MODULES)
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
-
-
-def __dir__() -> list[str]:
-    return sorted(_MODULES)
+__getattr__, __dir__, __all__ = import_when_used(
+    __name__,
+    {
+        "coefficients.catalogue": ("Entry", "load", "resolve"),
+        "coefficients.exported_code": ("exported_values", "source_file"),
+        "coefficients.record": ("table_of",),
+        "coefficients.table": ("Table",),
+        "fitting": ("Fit", "FittedForm", "Form", "Goal", "Stage", "plain_form"),
+        "fitting.fit": ("fit",),
+        "fitting.shapes.monomial_sums": ("powers",),
+        "integrals": (
+            *("PS", "G", "Q", "R", "VELVET"),
+            *("Axis", "Estimate", "Reference", "Sampling"),
+        ),
+        "integrals.data": ("samples", "table"),
+        "integrals.reference": ("leg",),
+        "integrals.reference_of_source": ("make_reference",),
+        "integrals.sources": (
+            *("closed_form", "hemisphere", "monte_carlo", "quadrature", "sphere"),
+        ),
+        "programs": ("LANGUAGES", "Parameter", "function", "write_source"),
+        "quantities": ("problem", "problems", "register"),
+        "quantities.calling_convention": ("Argument", "CallingConvention"),
+        "quantities.piecewise.blend_fit": ("BlendFit", "fit_blend"),
+        "quantities.piecewise.fit": ("NdfFit", "fit_ndf"),
+        "quantities.piecewise.targets": ("analytic_ndf", "measured_ndf", "named_ndf"),
+        "quantities.plot_hints": ("AxisHint", "PlotHints"),
+        "quantities.problem": ("Published",),
+        "shadefit.declaration": ("Problem",),
+        "shadefit.many_points": ("estimates", "values"),
+        "shadefit.result": ("Result",),
+        "shadefit.shared_denominator": ("fit_with_shared_denominator",),
+    },
+)

@@ -22,6 +22,7 @@ from integrals.reference_of_source import EVERYTHING, make_reference, weighted
 from integrals.sampling import Sampling
 from integrals.sources import Source
 from programs.printing.formula import definitions
+from programs.program import reachable_values
 from quantities.calling_convention import CallingConvention
 from quantities.defaults import default_calling, default_exact_code
 from quantities.plot_hints import PlotHints
@@ -238,6 +239,11 @@ class Problem(Quantity):
             raise ValueError(f"{self.name} has a form {form.name!r}: allowed is another name")
         with jax.enable_x64(True):
             program = program_of(form)  # Raises ValueError if the form cannot be exported.
+        for k in sorted({*range(form.size)} - reachable_values(program)):
+            raise ValueError(
+                f"{form.name} does not use its coefficient {form.coefficient_names[k]}: allowed "
+                "are coefficients that its value depends on"
+            )
         if form.equation == form.name:
             names = [*map(str, form.coefficient_names), *(axis.symbol for axis in form.axes)]
             text = definitions(program, names, self.symbol)

@@ -9,12 +9,23 @@ import os
 import re
 from collections.abc import MutableMapping
 
-# References need float64 on the processor. With more threads, the order of sums, and so their last
-# digits, would depend on the machine. Pictures are written to files only.
+
+def _processors() -> int:
+    """Return the number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+# References need float64 on the processor. With more threads of OpenBLAS, the order of sums, and so
+# their last digits, would depend on the machine. XLA reads the number of its threads from NPROC.
+# One thread adds in another order than several, but how many these are makes no difference: so a
+# single processor gets two threads. Pictures are written to files only.
 _SET = {
     "JAX_ENABLE_X64": "1",
     "JAX_PLATFORMS": "cpu",
     "OPENBLAS_NUM_THREADS": "1",
+    "NPROC": str(max(2, _processors())),
     "MPLBACKEND": "agg",
 }
 # JAX, Equinox (EQX_ON_ERROR), and what chooses other code for sums and elementary functions

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from rich.console import Console
 from rich.text import Text
 
-from coefficients.files import OUTPUT
+from coefficients.files import is_standard_output
 from shadefit.encoding import shown, shown_json, visible
 from shadefit.layout import RULE, laid_out, wrapped
 
@@ -28,7 +28,8 @@ NOT_FINITE = {"inf": "infinity", "-inf": "-infinity", "nan": "no number"}
 @contextmanager
 def messages_beside(*files: Path | None) -> Generator[None]:
     """Print messages to standard error if one of the files of a command is standard output."""
-    with redirect_stdout(sys.stderr) if OUTPUT in files else nullcontext():
+    beside = any(each is not None and is_standard_output(each) for each in files)
+    with redirect_stdout(sys.stderr) if beside else nullcontext():
         yield
 
 

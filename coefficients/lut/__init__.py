@@ -2,7 +2,7 @@
 
 * `texture`: a `Lut` and its filters; `texels`: how values are rounded
 * `baking`: `bake` makes a LUT of a function, `errors_of` measures it against exact values
-* `beside`: the tables of a quantity beside a LUT of it, and LUTs beside tables on a frontier
+* `beside`: the tables of a quantity beside a LUT of it
 * `files`: `write_lut` writes it in one of the `FORMATS`
 """
 

@@ -6,14 +6,10 @@ import numpy as np
 
 from coefficients.catalogue import Entry, Kind, entries
 from coefficients.exported_code import operations_of
-from coefficients.frontier import Mark
-from coefficients.lut.baking import MOST_AXES, bake, errors_of, scaled_for_lut
-from coefficients.lut.texels import Texel
 from coefficients.lut.texture import Lut
 from fitting import Domain, FittedForm, common_domain, form_values, judge
 from fitting.points.scattered import judging_points
-from integrals.many_points import estimates_at_many
-from integrals.reference import Axis, box_of
+from integrals.reference import Axis
 from quantities import Problem
 
 # A coefficient is a float in a shader.
@@ -56,31 +52,6 @@ def difference_from(lut: Lut, fitted: FittedForm, domain: Domain) -> float:
     """Return the largest difference of a LUT from a fitted form, at the points that judge forms."""
     points, _ = judging_points(domain)
     return float(np.max(np.abs(lut(points) - form_values(fitted, points))))
-
-
-def lut_marks(
-    owner: Problem, counts: tuple[int, ...] = (16, 32, 64), texel: Texel = "float16"
-) -> list[Mark]:
-    """Return marks, for the frontier of a quantity's forms, of LUTs with `counts` texels an axis.
-
-    Their domain is that of the quantity's default form. Operations are those beside the one fetch.
-    The list is empty for a quantity that no texture can hold.
-    """
-    axes = scaled_for_lut(owner.default.axes)
-    if len(axes) > MOST_AXES or not np.isfinite(box_of(axes)).all():
-        return []
-    found = []
-    for count in counts:
-        lut = bake(
-            lambda points: np.asarray(estimates_at_many(owner.reference, points).value),
-            axes,
-            [count] * len(axes),
-            texel=texel,
-        )
-        errors = errors_of(lut, owner.reference)
-        name = f"LUT {'×'.join(map(str, lut.size))} {texel}"
-        found.append(Mark(name, "lut", lut.operations, errors.largest, errors.rms))
-    return found
 
 
 def _beside(entry: Entry, domain: Domain) -> Beside | None:

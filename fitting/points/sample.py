@@ -63,6 +63,7 @@ def _sample_of_data(form: Form, goal: Goal, measure: str) -> Sample:
             f"{form.name} has {form.size} coefficients, but {data.source} has only {len(points)} "
             "rows to fit: allowed is a form with fewer"
         )
+    _require_finite(points, values, form, goal)
     error = 0.0 if data.sigma is None else float(data.sigma.max())
     return Sample(points, values, error, scale_at(points, values, form, goal, measure) * weights)
 
@@ -74,6 +75,7 @@ def sample_at(points: np.ndarray, form: Form, goal: Goal, measure: str) -> Sampl
 
 def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, measure: str) -> Sample:
     exact, error = np.asarray(estimates.value), np.asarray(estimates.error)
+    _require_finite(points, exact, form, goal)
     scale = scale_at(points, exact, form, goal, measure)
     if form.reference.best_leg == "monte_carlo":
         # Values with a large standard error weigh less, as in a fit to data. Without the median, a
@@ -81,6 +83,20 @@ def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, measure: 
         usual = np.median(error)
         scale = scale * (usual / np.hypot(usual, error) if usual > 0 else 1.0)
     return Sample(points, exact, float(np.max(error)), scale)
+
+
+def _require_finite(points: np.ndarray, exact: np.ndarray, form: Form, goal: Goal) -> None:
+    """Raise ValueError for exact values that no fit can be made to, with the first such point."""
+    bad = ~np.isfinite(exact) | (goal.relative & (exact == 0))
+    for k in np.flatnonzero(bad)[:1]:
+        place = ", ".join(
+            f"{axis.name} {x:.6g}" for axis, x in zip(form.axes, points[k], strict=True)
+        )
+        allowed = "finite values that are not 0, for relative errors"
+        raise ValueError(
+            f"{form.reference.name} is {exact[k]:g} at {place} and cannot be fitted there: "
+            f"allowed are {allowed if goal.relative else 'finite values'}"
+        )
 
 
 def scale_at(

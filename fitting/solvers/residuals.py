@@ -4,18 +4,14 @@ import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import jax
 import numpy as np
-from jax import Array
 
 from fitting.form import Form
 from fitting.goal import Side
-from fitting.linearity import LinearParts, linear_parts, positive_of
+from fitting.linearity import LinearParts, linear_parts
 from fitting.points.scattered import scattered_points
-from integrals.batches import Batches
+from fitting.solvers.at_points import SlopesAt, ValuesAt
 
-# The number of points at which values are evaluated at once, and at which derivatives are.
-_BATCH, _BATCH_OF_SLOPES = 4096, 512
 # The values of a bounded fit are kept this far from the ends of the codomain at the points, so that
 # they also stay within it elsewhere.
 _ROOM = 1e-3
@@ -36,8 +32,8 @@ class Residuals:
       there are further points between the data's own, because the proof is about all of them.
     * `least` and `most` (n,) are the lowest and the highest error that is allowed at each point.
     * `exact` and `scale` (n,) are the exact values and the weights of the errors.
-    * `parts`: the form as a quotient of linear functions of the free coefficients; None if it is no
-      such quotient.
+    * `find_parts` returns the form as a quotient of linear functions of the free coefficients; None
+      if it is no such quotient. `parts` calls it once.
     """
 
     values: Callable[[np.ndarray], np.ndarray]
@@ -48,7 +44,12 @@ class Residuals:
     most: np.ndarray
     exact: np.ndarray
     scale: np.ndarray
-    parts: LinearParts | None = None
+    find_parts: Callable[[], LinearParts | None] = lambda: None
+
+    @functools.cached_property
+    def parts(self) -> LinearParts | None:
+        """The form as a quotient of linear functions of the free coefficients, or None."""
+        return self.find_parts()
 
     def is_good(self, z: np.ndarray) -> bool:
         """Whether all errors are finite, and what must stay positive is so at all points."""
@@ -66,15 +67,24 @@ def residuals(
 ) -> Residuals:
     """Return the weighted errors of a form as functions of its free coefficients.
 
-    `free` is a mask of the free coefficients; the others have their values in `fixed`. Both have an
-    element for each coefficient of the form. If `bounded`, values of the form are only allowed
-    between the ends of the codomain, with some distance from both.
+    `points` are (n, axes), the `exact` values and their `scale` (n,). `free` is a mask of the free
+    coefficients; the others have their values in `fixed`. Both have an element for each
+    coefficient. If `bounded`, values of the form are only allowed between the ends of the codomain,
+    with some distance from both.
     """
 
-    def at(function, z, x):
-        whole = fixed.copy()
-        whole[free] = z
-        return x.evaluate(functools.partial(function, form, whole))
+    def whole(z):
+        c = fixed.copy()
+        c[free] = z
+        return c
+
+    all_free, unweighted = bool(free.all()), bool(np.all(scale == 1))
+
+    def chosen(columns):
+        return columns if all_free else columns[:, free]
+
+    def weighted(columns, rows):
+        return columns if unweighted else columns * scale[rows, None]
 
     # The exact value may itself be an end: the distance is at most half of the exact value's own.
     lower, upper = form.reference.codomain
@@ -88,34 +98,20 @@ def residuals(
     if form.reference.data is not None:
         between = scattered_points(form.reference, form.axes, _BETWEEN, _SEED)
         guarded = np.concatenate([points, between])
-    all_points, all_guarded = Batches(points, _BATCH), Batches(guarded, _BATCH)
-    points_of, guarded_of = _Chosen(points), _Chosen(guarded)
+    at, slopes = ValuesAt(form, points), SlopesAt(form, points)
+    at_guarded = at if guarded is points else ValuesAt(form, guarded)
+    room_slopes = slopes if guarded is points else SlopesAt(form, guarded)
     return Residuals(
-        lambda z: (at(_values, z, all_points) - exact) * scale,
-        lambda z, rows: at(_slopes, z, points_of(rows))[:, free] * scale[rows, None],
-        lambda z: at(_rooms, z, all_guarded),
-        lambda z, rows: at(_room_slopes, z, guarded_of(rows))[:, free],
+        lambda z: (at.values(whole(z)) - exact) * scale,
+        lambda z, rows: weighted(chosen(slopes.values(whole(z), rows)), rows),
+        lambda z: at_guarded.rooms(whole(z)),
+        lambda z, rows: chosen(room_slopes.rooms(whole(z), rows)),
         least,
         most,
         exact,
         scale,
-        _free_parts(form, points, free, fixed),
+        lambda: _free_parts(form, points, free, fixed),
     )
-
-
-@dataclass
-class _Chosen:
-    """Batches of chosen points (n, axes). Those of the last choice are kept for the next call."""
-
-    points: np.ndarray
-    rows: np.ndarray | None = None
-    batches: Batches | None = None
-
-    def __call__(self, rows: np.ndarray) -> Batches:
-        """Return the batches of the points with these indices."""
-        if self.rows is None or self.batches is None or not np.array_equal(rows, self.rows):
-            self.rows, self.batches = rows, Batches(self.points[rows], _BATCH_OF_SLOPES)
-        return self.batches
 
 
 def _free_parts(form: Form, points, free, fixed) -> LinearParts | None:
@@ -127,25 +123,6 @@ def _free_parts(form: Form, points, free, fixed) -> LinearParts | None:
     return LinearParts(
         parts.a0 + parts.a @ held, parts.a[:, free], parts.b0 + parts.b @ held, parts.b[:, free]
     )
-
-
-def _value(form: Form, c: Array, point: Array) -> Array:
-    return form(c.reshape(form.coefficient_shape), *point)
-
-
-def _room(form: Form, c: Array, point: Array) -> Array:
-    return positive_of(form)(c.reshape(form.coefficient_shape), *point)
-
-
-def _at_points(function):
-    """Map a function of a form, coefficients and a point over points; compiled once for a form."""
-    return jax.jit(
-        lambda form, c, points: jax.vmap(lambda p: function(form, c, p))(points), static_argnums=0
-    )
-
-
-_values, _rooms = _at_points(_value), _at_points(_room)
-_slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_room, 1))
 
 
 def limits(problem: Residuals, side: Side) -> tuple[np.ndarray, np.ndarray]:

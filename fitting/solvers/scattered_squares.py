@@ -76,10 +76,15 @@ def _descend(
 ) -> Descent | None:
     """Return the end of a descent from one start; None if it has a pole."""
     everywhere = np.arange(len(problem.exact))
+    refused = False
 
     def guarded(z: np.ndarray) -> np.ndarray:
+        nonlocal refused
         error = problem.values(z)
-        return error if problem.positive(z).min() > 0 else np.full_like(error, np.inf)
+        if problem.positive(z).min() > 0:
+            return error
+        refused = True
+        return np.full_like(error, np.inf)
 
     def slopes(z: np.ndarray) -> np.ndarray:
         return problem.slopes(z, everywhere)
@@ -90,7 +95,8 @@ def _descend(
     ends = []
     if problem.is_good(start):
         ends.append(from_start(guarded, slopes, start))
-        if ends[0].converged:
+        # If nothing was refused, a descent without the guard would be the same.
+        if ends[0].converged or not refused:
             return ends[0]
     ends.append(from_start(problem.values, slopes, start))
     if not problem.is_good(ends[-1].z):

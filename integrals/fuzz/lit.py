@@ -253,5 +253,6 @@ E_LIT = Reference(
     sampling=Sampling(fitted=13, checked=15, judged=17),
     quadrature=quadrature,
     monte_carlo=monte_carlo,
+    # It may be a little above one (docs/ambient-light.md).
     codomain=(0.0, 1.25),
 )

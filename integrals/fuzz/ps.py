@@ -53,7 +53,10 @@ def closed_form(alpha, theta_f, theta_u, phi) -> Estimate:
 
 
 def fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scalar) -> Array:
-    """Return P_s in closed form from α and the angles θf, θu, φ in radians, for float64."""
+    """Return P_s in closed form from α and the angles θf, θu, φ in radians, for float64.
+
+    The leg and all fits use it. `quick_fraction_at` is for many points that no table depends on.
+    """
     light, fiber = direction(theta_u, phi), fiber_direction(theta_f)
     return scattered_fraction(
         light[2],
@@ -70,8 +73,8 @@ def quick_fraction_at(alpha: Scalar, theta_f: Scalar, theta_u: Scalar, phi: Scal
     """Return P_s at a point, as `fraction_at`, but about six times as fast under `jax.vmap`.
 
     Its sines and cosines are polynomials, which the compiler vectorises. Its error is at most 4ε/α
-    too. Fits use `fraction_at`, because the last digits of these values differ, and with them the
-    bytes of tables would change.
+    too, but its last digits differ. Use it for many points, such as pictures and measurements. What
+    a table is made of uses `fraction_at`: with other digits, the bytes of tables would change.
     """
     theta_f, theta_u, phi = map(jnp.asarray, (theta_f, theta_u, phi))
     sin_f, cos_f = sine_and_cosine(theta_f)

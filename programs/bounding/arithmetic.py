@@ -29,7 +29,7 @@ Image = Callable[[Interval], Interval]
 
 
 def outward(lower: np.ndarray, upper: np.ndarray, ulps: int = 1) -> Interval:
-    """Move bounds outwards by units in the last place."""
+    """Move bounds (…) outwards by `ulps` units in the last place."""
     for _ in range(ulps):
         lower, upper = np.nextafter(lower, -np.inf), np.nextafter(upper, np.inf)
     return Interval(lower, upper)

@@ -1,9 +1,10 @@
-"""Fits of the constants of the ambient models to the exact radiance of the layer.
+"""Fits of the constants of `shading.lit_fraction` to E_lit, and of the ambient models to radiance.
 
 The points are Sobol' points of this module. No point at which docs/brdf.md judges the models is
-among them. Each model is fitted to the radiance in twelve lights, relative to the mean radiance in
-each: a uniform light, and eleven broad lobes (`shading.harmonics.LOBE`).
-`python -m quantities.fuzz.ambient_fit` fits all models and prints the constants.
+among them. `lit_fraction` is fitted to exact E_lit. Each model is fitted to the radiance in twelve
+lights, relative to the mean radiance in each: a uniform light, and eleven broad lobes
+(`shading.harmonics.LOBE`). `python -m quantities.fuzz.ambient_fit` makes all these fits and prints
+the constants.
 """
 
 import functools
@@ -15,11 +16,13 @@ import numpy as np
 from jax import Array
 
 from fitting.points.grids import sobol_points
-from fitting.solvers.descent import descend
+from fitting.solvers.descent import Descent, descend
 from integrals import PS, G
+from integrals.fuzz.lit import E_LIT
 from integrals.fuzz.radiance import layer_response
 from integrals.reference import Axis
 from quantities.fuzz.ambient_range import least_variances
+from quantities.fuzz.lit_forms import seen
 from shading import (
     AMBIENT_MODELS,
     AmbientModel,
@@ -29,6 +32,7 @@ from shading import (
     harmonics,
     light_weights,
 )
+from shading.fuzz.ambient import lit_by_constants
 from shading.harmonics import LOBE, UNIFORM
 
 # What the points fill evenly; the density evenly in its logarithm. The fibre leans to azimuth 0.
@@ -40,6 +44,9 @@ AXES = (
     Axis("phi", 0.0, np.pi),
 )
 EXPONENT, SEED = 12, 20261129
+# Those of `lit_fraction`
+LIT_AXES = (Axis("alpha", 0.15, 1.0), *(AXES[k] for k in (1, 3, 4)))
+LIT_EXPONENT, LIT_START = 13, (1.0, 0.5)
 # The rule for exact radiances. With the double number of nodes, the constants are the same to the
 # digits that are kept.
 RULE = {"step": 1 / 12, "azimuths": 240}
@@ -171,6 +178,23 @@ def fit_model(model: AmbientModel, at: Samples, start=None) -> FittedModel:
     return FittedModel(constants, end.converged, tuple(map(float, rms)))
 
 
+def fit_lit_fraction(exponent: int = LIT_EXPONENT) -> Descent:
+    """Fit the two constants of `shading.lit_fraction` to exact E_lit at 2^`exponent` points."""
+    alpha, theta_f, cos_vn, phi = sobol_points(LIT_AXES, exponent, SEED).T
+    points = np.stack([alpha, theta_f, np.arccos(cos_vn), phi], axis=1)
+    exact = E_LIT.values(points)
+    cos_vt, scattered = jax.jit(jax.vmap(seen))(*points.T)
+    by_constants = jax.vmap(lit_by_constants, in_axes=(None, 0, 0, 0))
+
+    def residual(k):
+        return by_constants(tuple(k), 1 - scattered, cos_vt, alpha) - exact
+
+    compiled, slopes = jax.jit(residual), jax.jit(jax.jacfwd(residual))
+    return descend(
+        lambda z: np.asarray(compiled(z)), lambda z: np.asarray(slopes(z)), np.array(LIT_START)
+    )
+
+
 @functools.cache
 def fitted_models() -> dict[str, FittedModel]:
     """Return the fits of all models that have constants, by name."""
@@ -181,6 +205,9 @@ def fitted_models() -> dict[str, FittedModel]:
 def main() -> None:
     """Print the fitted constants of all models and their errors."""
     jax.config.update("jax_enable_x64", True)
+    lit = fit_lit_fraction()
+    print("lit_fraction", "converged" if lit.converged else "did not converge")
+    print("  constants", ", ".join(f"{each:.4f}" for each in lit.z))
     for name, fitted in fitted_models().items():
         print(name, "converged" if fitted.converged else "did not converge")
         print("  constants", ", ".join(f"{each:.4f}" for each in fitted.constants))

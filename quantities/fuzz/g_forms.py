@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from fitting.form import Form, Proofs, Stage, unguarded
+from fitting.form import Form, Proofs, Stage, Wider, unguarded
 from integrals import G
 from integrals.reference import restricted
 from shading.types import Scalar
@@ -45,6 +45,33 @@ FACTORS: dict[str, Piece] = {
     ),
 }
 DECAYS = ("exponential", "power")
+
+# The rate and the factor that have all others as special cases: x = d (c₀ + c₁/(c₂ + ν + d) + c₃/ν)
+# and F = c₀ + c₁/(c₂ + ν (c₃ + c₄/(c₅ + ν))). They are not searched: they only evaluate the others.
+# Of each special case there are the places of its coefficients, and the fixed ones. A pole without
+# a numerator is farther away than any other, so that its divisor is never the least.
+_FAR = 1e300
+_WIDE_RATES = {
+    "constant": ((0,), (0.0, 0.0, _FAR, 1.0)),
+    "scaled": ((0, 3), (0.0, 0.0, _FAR, 1.0)),
+    "pole": ((0, 1, 2), (0.0, 0.0, 1.0, 1.0)),
+}
+_WIDE_FACTORS = {
+    "linear": ((3,), (0.0, 1.0, 1.0, 0.0, 0.0, _FAR)),
+    "affine": ((2, 3), (0.0, 1.0, 0.0, 0.0, 0.0, _FAR)),
+    "pole": ((0, 1, 2), (0.0, 0.0, 0.0, 1.0, 0.0, _FAR)),
+    "inverse": ((3, 4, 5), (0.0, 1.0, 1.0, 0.0, 0.0, 1.0)),
+}
+
+
+def _widest_rate(c, d, nu):
+    return d * (c[0] + c[1] / (c[2] + nu + d) + c[3] / nu)
+
+
+def _widest_factor(c, nu):
+    return c[0] + c[1] / (c[2] + nu * (c[3] + c[4] / (c[5] + nu)))
+
+
 # The rates and factors as text. The coefficients of the factor begin at C[{0}].
 _RATE_TEXTS = {
     "constant": "d·(1/ν + C[0])",
@@ -76,11 +103,7 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         d, nu = jnp.asarray(density), jnp.asarray(cos_v)
         x = rate_of(c[:split], d, nu)
         F = factor_of(c[split : split + len(factor_names)], d, nu)
-        if decay == "exponential":
-            return (1 - jnp.exp(-x)) * F
-        base = 1 + x * (c[-2] + c[-1] * x)
-        square = base * base
-        return (1 - 1 / (square * square)) * F
+        return _decayed(decay, c, x, F)
 
     places = range(split, split + len(factor_names) + len(power_names))
     base = f"base = 1 + x·(C[{places[-2]}] + C[{places[-1]}]·x); " if decay == "power" else ""
@@ -99,6 +122,43 @@ def decay_g(*, decay: str, rate: str, factor: str) -> Form:
         stages=(Stage(value),),
         starts=(start, start * 1.3, start * 0.75),
         shape={"decay": decay, "rate": rate, "factor": factor},
+        wider=_wider(decay, rate, factor),
+    )
+
+
+def _decayed(decay: str, c, x, F):
+    if decay == "exponential":
+        return (1 - jnp.exp(-x)) * F
+    base = 1 + x * (c[-2] + c[-1] * x)
+    square = base * base
+    return (1 - 1 / (square * square)) * F
+
+
+def _wider(decay: str, rate: str, factor: str) -> Wider:
+    """Return the form with the widest rate and factor, and where the coefficients are in it."""
+    (rate_places, rate_fixed), (places, fixed) = _WIDE_RATES[rate], _WIDE_FACTORS[factor]
+    of_power = (0.0, 0.0) if decay == "power" else ()
+    first, last = len(rate_fixed), len(rate_fixed) + len(fixed)
+    return Wider(
+        _widest(decay),
+        (*rate_places, *(first + k for k in places), *range(last, last + len(of_power))),
+        (*rate_fixed, *fixed, *of_power),
+    )
+
+
+@functools.cache
+def _widest(decay: str) -> Form:
+    def value(c, density: Scalar, cos_v: Scalar) -> Array:
+        d, nu = jnp.asarray(density), jnp.asarray(cos_v)
+        return _decayed(decay, c, _widest_rate(c[:4], d, nu), _widest_factor(c[4:10], nu))
+
+    return Form(
+        name="widest-decay-g",
+        equation="all decays of one kind",
+        reference=G,
+        axes=AXES,
+        coefficient_names=[f"c{k}" for k in range(12 if decay == "power" else 10)],
+        stages=(Stage(value),),
     )
 
 
@@ -110,7 +170,11 @@ def tied_g(*, poles: int, root: int) -> Form:
     which is a constant, plus a pole if `poles` is 1. The divisor 1 + c√d is there only if `root` is
     1. The coefficients are those of w, then c.
     """
+    places = (0, *((1, 2) if poles else ()), *((3,) if root else ()))
+    return _tied_form(poles, root, Wider(_widest_tie(), places, (0.0, 0.0, 1.0, 0.0)))
 
+
+def _tied_form(poles: int, root: int, wider: Wider | None) -> Form:
     def value(c, density: Scalar, cos_v: Scalar) -> Array:
         d, nu = jnp.asarray(density), jnp.asarray(cos_v)
         w = c[0] + c[1] / (c[2] + nu) if poles else c[0]
@@ -133,7 +197,13 @@ def tied_g(*, poles: int, root: int) -> Form:
         starts=(first, first * 1.3),
         shape={"poles": poles, "root": root},
         proofs=Proofs(positive=unguarded),
+        wider=wider,
     )
+
+
+@functools.cache
+def _widest_tie() -> Form:
+    return _tied_form(1, 1, None)
 
 
 def candidates() -> Iterator[Form]:

@@ -12,9 +12,6 @@ from quantities.calling_convention import Argument, CallingConvention
 from quantities.fuzz.lit_forms import AREA_RATIO, seen
 from quantities.problem import Problem
 
-# E_lit may be a little above one (docs/ambient-light.md).
-_CODOMAIN = (0.0, 1.25)
-
 
 def _columns(points: np.ndarray) -> np.ndarray:
     """Return v·t and P_s(v) (n, 2) at points (n, 4)."""
@@ -34,7 +31,7 @@ LIT = Problem(
         "view v, and scattered = P_s(v), exact or by a table",
         second=(("TdotV", (-1.0, 1.0)), ("scattered", (0.0, 1.0))),
         columns=_columns,
-        codomain=_CODOMAIN,
+        codomain=E_LIT.codomain,
         material="FuzzLitMaterial",
     ),
     # With a topic, tables have no `about`. It would name an argument for each axis, but here v·t

@@ -12,8 +12,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from fitting.form import FittedForm, Form, Proofs, Stage
+from fitting.form import FittedForm, Form, Proofs, Stage, Wider
 from fitting.shapes.poles import (
+    among_poles,
     least_offset,
     pole_names,
     pole_starts,
@@ -33,6 +34,10 @@ LEAST_DENSITY = 1e-7
 # Poles are farther than this from x = 0, so that no precision of shaders turns one into a division
 # by zero.
 _LEAST_OFFSET = 5e-4
+
+# A search tries up to this many terms and poles. All its forms of a structure are evaluated by the
+# one that has the most of both.
+MOST_TERMS, MOST_POLES = 4, 2
 
 # The equation of each structure, in which {0} is the polynomial with the poles, and the variable of
 # that polynomial
@@ -63,7 +68,19 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
     """
     if terms + poles == 0:
         raise ValueError("terms + poles = 0: at least one is needed")
+    wider = None
+    if terms <= MOST_TERMS and poles <= MOST_POLES:
+        places = among_poles((terms, poles), (MOST_TERMS, MOST_POLES))
+        wider = Wider(_widest(structure), *places)
+    return _pole_form(structure, terms, poles, wider)
 
+
+@functools.cache
+def _widest(structure: str) -> Form:
+    return _pole_form(structure, MOST_TERMS, MOST_POLES, None)
+
+
+def _pole_form(structure: str, terms: int, poles: int, wider: Wider | None) -> Form:
     def value(c, density: Scalar) -> Array:
         return _surround(structure, jnp.asarray(density), lambda x: poles_value(c, terms, poles, x))
 
@@ -81,6 +98,7 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
             positive=lambda c, _: least_offset(c, terms, poles) - _LEAST_OFFSET,
             quotient=functools.partial(_as_quotient, structure, terms, poles) if poles else None,
         ),
+        wider=wider,
     )
 
 
@@ -91,7 +109,24 @@ def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> 
     for the highest power, whose coefficient is 1.
     """
     above, below = quotient_of_poles(fitted.constants, terms, poles)
-    split = len(above)
+    split, most, wider = len(above), MOST_TERMS + poles, None
+    if split <= most:
+        places = (*range(split), *range(most, most + poles))
+        wider = Wider(_widest_quotient(structure, poles), places, (0.0,) * (most + poles))
+    form = _quotient(structure, split, poles, wider)
+    return form.fitted(np.concatenate([above, below[:-1]]))
+
+
+@functools.cache
+def _widest_quotient(structure: str, poles: int) -> Form:
+    return _quotient(structure, MOST_TERMS + poles, poles, None)
+
+
+def _quotient(structure: str, split: int, poles: int, wider: Wider | None) -> Form:
+    """Return the form with a quotient of polynomials: `split` coefficients above, degree `poles`.
+
+    The highest power of the denominator has the coefficient 1.
+    """
 
     def value(c, density: Scalar) -> Array:
         def r(x):
@@ -100,19 +135,21 @@ def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> 
 
         return _surround(structure, jnp.asarray(density), r)
 
-    form = Form(
+    return Form(
         name="quotient-q",
         equation=f"{structure}, with a quotient of polynomials",
         reference=Q,
         axes=AXES,
         coefficient_names=[f"n{k}" for k in range(split)] + [f"d{k}" for k in range(poles)],
         stages=(Stage(value),),
+        wider=wider,
     )
-    return form.fitted(np.concatenate([above, below[:-1]]))
 
 
 def candidates() -> Iterator[Form]:
     """Yield the forms of Q that a search tries."""
-    for structure, terms, poles in itertools.product(STRUCTURES, range(5), range(3)):
+    for structure, terms, poles in itertools.product(
+        STRUCTURES, range(MOST_TERMS + 1), range(MOST_POLES + 1)
+    ):
         if terms + poles > (structure == "free") and not (structure == "log" and poles):
             yield pole_q(structure=structure, terms=terms, poles=poles)

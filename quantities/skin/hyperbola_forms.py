@@ -101,8 +101,8 @@ def hyperbola_form(
             "D",
             "(c + q)/2 + N/B" if below else "(c + q)/2 + N",
             [
-                f"q = √(c² + {narrow * narrow!r}·{symbol}²)",
-                f"p = √(c² + {wide * wide!r}·{symbol}²) − q",
+                f"q = √(c² + ({narrow!r}·{symbol})²)",
+                f"p = √(c² + ({wide!r}·{symbol})²) − q",
                 f"N = {above}",
                 *([f"B = {shown_below}"] if below else []),
             ],

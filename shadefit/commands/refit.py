@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 WORKERS = 2
 # Nodes an axis, as in the paper.
 _NODES = 65
+# The measure that all quantities take
+_EVENLY = "uniform"
 
 
 def refit(
@@ -72,7 +74,7 @@ def refit(
             help="Weight of light directions in the fit of ps: uniform in angles, solid-angle, or "
             "cosine (projected solid angle). Other quantities have no such weight."
         ),
-    ] = "uniform",
+    ] = _EVENLY,
     norm: Norm = None,
     side: Side = None,
     rounding: Rounding = None,
@@ -189,6 +191,9 @@ def run(
 
 def _require_measure(weight: str) -> None:
     """Raise ValueError for a measure that no quantity has."""
+    # Every quantity can be fitted with the default, and importing all of them takes time.
+    if weight == _EVENLY:
+        return
     from quantities import problems
 
     every = (owner.reference.sampling.measures for owner in problems().values())
@@ -242,7 +247,7 @@ def _table(
         progress=tell,
         counterexamples=each.problem.counterexamples(),
     )
-    options = _options({**({} if weight == "uniform" else {"weight": weight}), **given})
+    options = _options({**({} if weight == _EVENLY else {"weight": weight}), **given})
     command = f"shadefit refit {each.name}{options}"
     table = table_of(made, command, table.name, each.problem)
     return table, _opinion(made) if second_opinion else None

@@ -2,10 +2,31 @@
 
 `gallery` lists the pictures; `fuzz_pictures` declares those of the fuzz BRDF. Any other quantity is
 drawn from its plot hints: by `curves` if it has one axis, by `maps` if it has two.
+
+The names below are imported when they are first used, so that a program that draws one picture does
+not wait for the import of all others.
 """
 
-from shadefit.figures.gallery import pictures as pictures
-from shadefit.figures.picture import Picture as Picture
-from shadefit.figures.picture import drawable as drawable
-from shadefit.figures.picture import require_libraries as require_libraries
-from shadefit.figures.style import render as render
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from shadefit.figures.gallery import pictures as pictures
+    from shadefit.figures.picture import Picture as Picture
+    from shadefit.figures.picture import drawable as drawable
+    from shadefit.figures.picture import require_libraries as require_libraries
+    from shadefit.figures.style import render as render
+
+_HOMES = {
+    "shadefit.figures.gallery": ("pictures",),
+    "shadefit.figures.picture": ("Picture", "drawable", "require_libraries"),
+    "shadefit.figures.style": ("render",),
+}
+_MODULES = {name: module for module, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)

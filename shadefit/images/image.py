@@ -1,5 +1,6 @@
 """An image with its colour space, and what may be required of one."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ from shadefit.images.colour_space import require_colour_space
 # a huge image, which would fill the memory.
 MAX_EDGE = 8192
 MAX_BYTES = 1 << 30
+# Rows that are worked on at once, so that intermediate values of a large image need little memory
+_ROWS = 256
 _CHANNELS = {1: "grey", 2: "two channels", 3: "RGB", 4: "RGBA"}
 
 
@@ -41,9 +44,14 @@ def image_of(pixels: np.ndarray, colour_space: str | None, name: str) -> Image:
     require_size(array.shape[1], array.shape[0], name)
     with np.errstate(over="ignore"):
         array = np.ascontiguousarray(array, np.float32)
-    if not np.all(np.isfinite(array)):
+    if not all(np.isfinite(array[rows]).all() for rows in bands(len(array))):
         raise ValueError(f"{name}: some values are NaN or infinite: allowed are finite numbers")
     return Image(array, colour_space, name)
+
+
+def bands(height: int) -> Iterator[slice]:
+    """Return the rows of an image in parts, from the first to the last."""
+    return (slice(top, min(top + _ROWS, height)) for top in range(0, height, _ROWS))
 
 
 def require_size(width: int, height: int, name: str, max_edge: int = MAX_EDGE) -> None:

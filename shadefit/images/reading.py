@@ -1,6 +1,7 @@
 """Images from PNG, EXR and DDS files."""
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from PIL.PngImagePlugin import PngImageFile
 
 from coefficients.input_files import read_bounded
 from shadefit.images.colour_space import SRGB, require_colour_space
-from shadefit.images.image import MAX_BYTES, MAX_EDGE, Image, image_of, require_size
+from shadefit.images.image import MAX_BYTES, MAX_EDGE, Image, bands, image_of, require_size
 from shadefit.images.optional_libraries import optional_library
 
 # The most bytes of a pixel, four floats, and those of all other content of a file
@@ -85,15 +86,27 @@ def _read_png(data: bytes, name: str, max_edge: int) -> np.ndarray:
     if raw in ("RGB;16B", "RGBA;16B"):
         # Pillow keeps the high byte of each value. The mode for numbers whose low byte comes first
         # takes the other one, so that decoding twice gives all 16 bits.
-        high = _decoded(file, file.mode).astype(np.uint16)
         again = _opened(PngImageFile, data, name, max_edge)
         again.tile = [tile._replace(args=raw.replace("16B", "16L"))]
-        return (high << 8 | _decoded(again, file.mode)) / np.float32(65535)
+        high, low = _decoded(file, file.mode), _decoded(again, file.mode)
+        return _scaled(
+            high.shape, lambda rows: high[rows].astype(np.uint16) << 8 | low[rows], 65535
+        )
     mode = _COLOURS.get(file.mode, file.mode)
     if file.mode == "P" and "transparency" in file.info:
         mode = "RGBA"
     scale = 65535 if mode == "I;16" else 255
     return _decoded(file, mode) / np.float32(scale)
+
+
+def _scaled(
+    shape: tuple[int, ...], codes: Callable[[slice], np.ndarray], largest: int
+) -> np.ndarray:
+    """Return codes, given by a function of rows, divided by the largest one, in float32."""
+    pixels = np.empty(shape, np.float32)
+    for rows in bands(shape[0]):
+        pixels[rows] = codes(rows) / np.float32(largest)
+    return pixels
 
 
 def _read_dds(data: bytes, name: str, max_edge: int) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from coefficients.files import write_whole_bytes
 from coefficients.textures.exr import write_exr
 from shadefit.images.colour_space import SRGB
-from shadefit.images.image import Image
+from shadefit.images.image import Image, bands
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 # The colour types of PNG, by the number of channels
@@ -52,13 +52,16 @@ def png_bytes(image: Image, bits: int = 8) -> bytes:
         raise ValueError(f"{image.name}: values outside [0, 1] do not fit into a PNG file")
     height, width, channels = image.pixels.shape
     largest, kind = (255, "u1") if bits == 8 else (65535, ">u2")
-    codes = np.floor(image.pixels * np.float64(largest) + 0.5).astype(kind)
+    codes = np.empty(image.pixels.shape, kind)
+    for part in bands(height):
+        codes[part] = np.floor(image.pixels[part] * np.float64(largest) + 0.5)
     rows = codes.reshape(height, -1).view(np.uint8)
-    differences = np.diff(rows, axis=0, prepend=np.zeros((1, rows.shape[1]), np.uint8))
-    filtered = np.concatenate([np.full((height, 1), 2, np.uint8), differences], axis=1)
+    filtered = np.full((height, 1 + rows.shape[1]), 2, np.uint8)
+    filtered[:, 1:] = rows
+    filtered[1:, 1:] -= rows[:-1]
     header = struct.pack(">2I5B", width, height, bits, _COLOUR_TYPES[channels], 0, 0, 0)
     colour = _chunk(b"sRGB", b"\0") if image.colour_space == SRGB else b""
-    data = _chunk(b"IDAT", zlib.compress(filtered.tobytes(), 6))
+    data = _chunk(b"IDAT", zlib.compress(filtered.data, 6))
     return _SIGNATURE + _chunk(b"IHDR", header) + colour + data + _chunk(b"IEND", b"")
 
 

@@ -34,7 +34,7 @@ def lit_fraction(scattered: Scalar, cos_vt: Scalar, alpha: Scalar) -> Array:
     `scattered` is P_s(v) in [0, 1], `cos_vt` is v·t, and `alpha` in (0, 1] the roughness. The value
     is 1 − P_s times √(σ²/(1 − κā²)), which stands for the mean of σ(v)/σ(u), with κ = 1 − α²,
     σ² = 1 − κ(v·t)², and ā² for the mean of (u·t)². It is 1 − P_s at α = 1 and as α → 0, as the
-    exact one is (docs/ambient-light.md). Both constants were fitted to exact values.
+    exact one is (docs/ambient-light.md). Both constants are fitted to exact values.
     """
     return lit_by_constants(LIT_FRACTION_CONSTANTS, 1 - jnp.asarray(scattered), cos_vt, alpha)
 
@@ -63,7 +63,8 @@ def ambient_layer_lit(
 
 # The constants k₀ and k₁ in ā² = (v·t)² (1 − k₀α) + k₁ α (1 − P_s). The first are fitted to E_lit,
 # the second, together with the level and slope of the correlation, to the radiance of the layer in
-# uniform light (`quantities.fuzz.ambient_fit`). 1 > k₁ and k₀ > k₁ keep 1 − κā² above zero.
+# uniform light. `python -m quantities.fuzz.ambient_fit` makes both fits again. 1 > k₁ and k₀ > k₁
+# keep 1 − κā² above zero.
 LIT_FRACTION_CONSTANTS = (1.3, 0.834)
 LIT_LAYER_CONSTANTS = (1.255, 0.9438, 0.8168, 0.4011)
 

@@ -15,6 +15,7 @@ import pytest
 from coefficients import files
 from coefficients.files import (
     ReaderGoneError,
+    is_standard_output,
     require_writable,
     require_writable_file,
     write_whole,
@@ -409,3 +410,12 @@ def test_a_kill_at_any_operation_leaves_the_old_file_or_the_new(tmp_path, monkey
         assert all(re.fullmatch(r"\.shadefit-[0-9a-f]{16}\.partial", name) for name in left)
         write_whole_bytes(folder / "file", b"later")
         assert (folder / "file").read_bytes() == b"later"
+
+
+def test_the_names_of_standard_output_are_known(tmp_path):
+    (tmp_path / "link").symlink_to("/dev/stdout")
+    (tmp_path / "file").touch()
+    known = [Path("-"), Path("/dev/stdout"), Path("/dev/fd/1"), tmp_path / "link"]
+    assert all(map(is_standard_output, known))
+    others = [Path("/dev/stderr"), Path("/dev/null"), tmp_path / "file", tmp_path / "missing"]
+    assert not any(map(is_standard_output, others))

@@ -10,13 +10,11 @@ from PIL import Image
 from scipy.interpolate import RegularGridInterpolator
 
 from coefficients.lut import FORMATS, Lut, bake, errors_of, require_format, write_lut
-from coefficients.lut.beside import lut_marks
 from coefficients.lut.texels import decoded, encoded
 from coefficients.lut.texture import fraction_on, texel_centres
 from fitting import Domain
 from fitting.points.scattered import checking_points, judging_points
 from integrals import Axis
-from quantities import problem
 from tests.fitting.toys import AXES, TOY
 
 X, Y = AXES
@@ -245,14 +243,6 @@ def test_what_is_no_texture_is_refused(axes, size, message):
 def test_a_cubic_texture_needs_three_texels_within_its_border():
     with pytest.raises(ValueError, match="size 4: allowed are 5 or more an axis"):
         bake(wave, (X,), (4,), filter="cubic")
-
-
-def test_luts_are_marks_of_the_frontier():
-    small, large = lut_marks(problem("q"), counts=(8, 16))
-    assert (small.name, small.kind, small.operations) == ("LUT 8 float16", "lut", 3)
-    assert large.largest < small.largest
-    # A texture has no four dimensions.
-    assert lut_marks(problem("ps")) == []
 
 
 # Files

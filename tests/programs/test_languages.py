@@ -5,7 +5,6 @@ import sys
 
 import pytest
 
-import programs
 from programs.languages import (
     LANGUAGES,
     PRECISIONS,
@@ -93,10 +92,3 @@ def test_languages_are_imported_without_jax():
     code = "import sys; from programs import LANGUAGES; print('jax' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
-
-
-def test_public_names_are_imported_when_they_are_used():
-    for name, module in programs._MODULES.items():
-        assert getattr(programs, name) is getattr(sys.modules[module], name)
-    with pytest.raises(AttributeError, match="'programs' has no attribute 'nonsense'"):
-        _ = programs.nonsense

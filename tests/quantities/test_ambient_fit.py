@@ -10,6 +10,7 @@ from integrals.fuzz.radiance import layer_response
 from quantities.fuzz.ambient_fit import (
     LOBES,
     Samples,
+    fit_lit_fraction,
     fit_model,
     fitting_lights,
     model_weights,
@@ -19,6 +20,7 @@ from quantities.fuzz.ambient_fit import (
 )
 from quantities.fuzz.ambient_range import least_variances, moments_of_weights
 from shading import AMBIENT_MODELS, LayerView, harmonics
+from shading.fuzz.ambient import LIT_FRACTION_CONSTANTS
 
 
 @functools.cache
@@ -118,6 +120,15 @@ def test_constants_are_those_of_the_fit(name):
     fitted = fit_model(model, fitting_samples())
     assert fitted.converged
     np.testing.assert_allclose(fitted.constants, model.constants, rtol=0, atol=1.5e-4)
+
+
+def test_the_constants_of_lit_fraction_are_those_of_the_fit():
+    """They are rounded to two and three decimals."""
+    fitted = fit_lit_fraction()
+    assert fitted.converged
+    off = np.abs(fitted.z - LIT_FRACTION_CONSTANTS)
+    assert off[0] < 5e-3
+    assert off[1] < 5e-4
 
 
 @functools.cache

@@ -94,6 +94,43 @@ def test_an_error_of_the_file_is_shown_by_its_own_lines_alone(tmp_path):
     assert "importlib" not in text
 
 
+@pytest.mark.parametrize("ends", ["sys.exit()", "sys.exit('bye')", "raise GeneratorExit"])
+def test_a_file_that_ends_the_program_is_an_error(tmp_path, ends):
+    (tmp_path / "mine.py").write_text(f"import sys\nimport os\n{ends}\n")
+    with pytest.raises(ProblemFileError, match=r"line 3"):
+        load_problems(str(tmp_path / "mine.py"))
+
+
+def test_a_file_that_removes_its_own_module_is_told_its_own_error(tmp_path):
+    (tmp_path / "mine.py").write_text("import sys\ndel sys.modules[__name__]\n1 / 0\n")
+    with pytest.raises(ProblemFileError, match="ZeroDivisionError"):
+        load_problems(str(tmp_path / "mine.py"))
+
+
+def test_what_a_file_prints_is_no_output_of_the_command(tmp_path, capsys):
+    (tmp_path / "mine.py").write_text("print('hello')\n")
+    with pytest.raises(ValueError, match="declares no quantity"):
+        load_problems(str(tmp_path / "mine.py"))
+    assert capsys.readouterr() == ("", "hello\n")
+
+
+def test_a_relative_path_gives_the_lines_too(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text("def broken():\n    return 1 / 0\n\nbroken()\n")
+    with pytest.raises(ProblemFileError, match="line 2, in broken"):
+        load_problems("mine.py")
+    (tmp_path / "axis.py").write_text(SHORT.format("").replace("0, 1", "1, 0"))
+    with pytest.raises(ValueError, match=r"^axis\.py:3: x in \[1, 0\]: it is empty"):
+        load_problems("axis.py")
+
+
+def test_the_notes_of_jax_are_no_part_of_an_error(tmp_path):
+    (tmp_path / "mine.py").write_text("import jax\njax.jit(lambda x: x if x > 0 else 1.0)(1.0)\n")
+    with pytest.raises(ProblemFileError, match="line 2") as caught:
+        load_problems(str(tmp_path / "mine.py"))
+    assert "internal frames" not in str(caught.value)
+
+
 def test_a_syntax_error_names_the_line(tmp_path):
     path = tmp_path / "mine.py"
     path.write_text("x = = 1\n")

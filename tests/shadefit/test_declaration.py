@@ -145,6 +145,18 @@ CASES = {
         lambda p: p.form(lambda x, a: a * x, domain={"z": (0, 1)}),
         "'z' is no axis: allowed are x",
     ),
+    "a coefficient without effect": (
+        lambda p: p.form(lambda x, a, b: a * x, name="f"),
+        "f does not use its coefficient b",
+    ),
+    "a form that is no number": (
+        lambda p: [p.form(lambda x, a: a * x * jnp.nan, name="nan"), p.fit("nan")],
+        "nan: its coefficients cannot be found",
+    ),
+    "a relative error of 0": (
+        lambda p: [p.form(lambda x, a: a * x, name="g"), p.fit("g", relative=True, norm="linf")],
+        "p is 0 at x 0 and cannot be fitted there: allowed are finite values that are not 0",
+    ),
     "sizes": (lambda p: p.form(lambda x, a: a * x, sizes={"b": 2}), "sizes of b = 2"),
 }
 
@@ -161,6 +173,18 @@ def test_misuse_is_told_in_one_line(case):
 def test_a_reference_that_is_nan_at_a_corner_is_refused():
     with pytest.raises(ValueError, match=r"lambda\(x\) is NaN at x = 0"):
         sf.Problem("p", [X], sf.closed_form(lambda x: jnp.sin(x) / x))
+
+
+def test_a_reference_of_complex_numbers_is_refused():
+    with pytest.raises(ValueError, match=r"lambda\(x\) returns complex numbers"):
+        sf.Problem("p", [X], sf.closed_form(lambda x: x + 1j))
+
+
+def test_a_reference_that_is_infinite_where_it_is_fitted_is_named():
+    problem = sf.Problem("p", [X], sf.closed_form(lambda x: 1 / x))
+    problem.form(lambda x, a: a * x, name="line")
+    with pytest.raises(ValueError, match=r"p is inf at x 0 and cannot be fitted there"):
+        problem.fit("line", norm="linf")
 
 
 def test_an_argument_for_no_axis_is_refused():

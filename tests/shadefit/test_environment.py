@@ -7,12 +7,14 @@ import sys
 
 import pytest
 
+from coefficients.catalogue import path_of
 from shadefit.environment import fix_environment
 
 FIXED = {
     "JAX_ENABLE_X64": "1",
     "JAX_PLATFORMS": "cpu",
     "OPENBLAS_NUM_THREADS": "1",
+    "NPROC": str(max(2, len(os.sched_getaffinity(0)))),
     "MPLBACKEND": "agg",
 }
 # Each of the first group changed numbers, or ended a command with a traceback or an abortion.
@@ -28,6 +30,7 @@ HOSTILE = {
     "JAX_NUMPY_DTYPE_PROMOTION": "strict",
     "JAX_DEBUG_NANS": "1",
     "OPENBLAS_CORETYPE": "Prescott",
+    "NPROC": "1",
     "NPY_DISABLE_CPU_FEATURES": "AVX2",
     "MPLBACKEND": "rubbish",
 }
@@ -98,6 +101,18 @@ def exported(tmp_path_factory):
     found = shadefit(folder, "export", "q", "--to", "c", "-o", "q.c")
     assert found[0] == 0 and found[3]["q.c"].startswith(b"// SPDX")
     return found
+
+
+@pytest.mark.slow
+def test_one_processor_refits_the_same_bytes_as_several(tmp_path):
+    processors = os.sched_getaffinity(0)
+    try:
+        os.sched_setaffinity(0, [min(processors)])
+        status, _, err, _ = shadefit(tmp_path, "refit", "g", "--out", "made")
+    finally:
+        os.sched_setaffinity(0, processors)
+    assert (status, err) == (0, b"")
+    assert (tmp_path / "made" / "g.json").read_bytes() == path_of("g").read_bytes()
 
 
 @pytest.mark.slow
