@@ -10,7 +10,8 @@ from coefficients.exported_code import trial_of
 from coefficients.proof_text import rounding_text
 from coefficients.rounding import arguments_of, certify_rounding, with_rounding
 from coefficients.table import parse, serialise
-from fitting.proofs.rounding_error import rounded_box, rounding_kernel
+from fitting.proofs.rounding_error import TracedArguments, rounded_box, rounding_kernel
+from integrals.reference import Axis
 from programs import evaluate, trace, write_source
 from programs.bounding.compiled import compiler_missing
 from programs.bounding.rounding import chained
@@ -96,3 +97,21 @@ def test_the_bound_holds_at_each_point_even_where_it_is_not_proven_on_boxes(name
     bounds = np.array([kernel.enclose(np.stack([x, x], axis=1))[1] for x in points])
     assert np.all(moved <= bounds)
     assert bounds.max() <= 40 * moved.max()
+
+
+def test_the_box_has_the_domain_and_its_ends_in_float32():
+    sides = (Axis("a", 0.1, 0.2, meaning="a"), Axis("b", -0.3, 1.0, meaning="b"))
+    box = rounded_box(TracedArguments(sides, lambda a, b: (a, b), (False, False)))
+    assert box.shape == (2, 2)
+    single = [[float(np.float32(x)) for x in (axis.lower, axis.upper)] for axis in sides]
+    for axis, rounded, side in zip(sides, single, box.tolist(), strict=True):
+        assert side == [min(axis.lower, rounded[0]), max(axis.upper, rounded[1])]
+    assert box[0].tolist() != [0.1, 0.2]
+
+
+def test_an_infinite_domain_is_refused():
+    entry = resolve("best/q-9")
+    given = arguments_of(entry)
+    infinite = TracedArguments((Axis("d", 0.0, np.inf, meaning="d"),), given.call, given.rounded)
+    with pytest.raises(ValueError, match="a domain is infinite"):
+        rounding_kernel(entry.functions("float"), infinite, IEEE)

@@ -1,5 +1,6 @@
 """Largest errors as theorems: replayed by other arithmetic, and refuted where they are wrong."""
 
+import ctypes
 import itertools
 
 import jax.numpy as jnp
@@ -13,8 +14,9 @@ from fitting.form import traced
 from fitting.proofs import largest_error
 from fitting.proofs.largest_error import certify_largest_error, difference_code
 from programs.bounding import compiled
-from programs.bounding.compiled import compiler_missing
-from programs.bounding.largest import bound_largest
+from programs.bounding.compiled import Kernel, compiler_missing
+from programs.bounding.denominators import DenominatorBound
+from programs.bounding.largest import LargestValue, bound_largest
 from programs.functions import Function, Parameter
 from programs.program import interpret
 from programs.tracing.tracer import trace
@@ -112,6 +114,30 @@ def test_a_radicand_that_is_zero_on_the_boundary_is_proven_defined_first():
     fitted = form.fitted(np.array([0.3]))
     found = certify_largest_error(fitted, difference_code(fitted, exact, 1e-15), 1.01, MIDDLE)
     assert sampled(fitted) <= found.upper <= 1.02 * sampled(fitted)
+
+
+@pytest.mark.parametrize("proven", [True, False])
+@pytest.mark.parametrize("first", [None, 0.3])
+def test_the_negative_part_of_a_radicand_is_left_out_only_after_a_proof(monkeypatch, first, proven):
+    """The number of sides of these kernels says whether roots are taken to be defined."""
+    searched = []
+
+    def compiled_for(parts, sides, roots_are_defined, long):
+        return Kernel(ctypes.CDLL(None), int(roots_are_defined))
+
+    def search(kernel, *_, **__):
+        searched.append(kernel.sides)
+        return LargestValue(0.1, (0.5, 0.5), 0.2 if kernel.sides else first, 1)
+
+    monkeypatch.setattr(largest_error, "compiler_missing", lambda: None)
+    monkeypatch.setattr(largest_error, "compile_kernel", compiled_for)
+    monkeypatch.setattr(largest_error, "bound_largest", search)
+    bound = DenominatorBound(1.0 if proven else -np.inf, 1)
+    monkeypatch.setattr(largest_error, "prove_no_pole", lambda *_: bound)
+    found = certify_largest_error(FITTED, difference_code(FITTED, exact, 0.0), 1.01, MIDDLE)
+    again = first is None and proven
+    assert searched == ([0, 1] if again else [0])
+    assert found.upper == (np.nextafter(0.2, 1) if again else first and np.nextafter(first, 1))
 
 
 # Replay

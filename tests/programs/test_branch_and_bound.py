@@ -28,6 +28,8 @@ KNOWN = {
     "sum": (lambda x, y: x + y, -2.0, 2.0),
     "bowl between the nodes": (lambda x, y: (x - 0.3) ** 2 + (y + 0.2) ** 2, 0.0, 1.69 + 1.44),
     "saddle": (lambda x, y: x * y, -1.0, 1.0),
+    "hill": (lambda x, y: 0.6 * x - x * x, -1.6, 0.09),
+    "constant": (lambda x, y: jnp.maximum(x, 2.0), 2.0, 2.0),
     "one input": (lambda x, y: jnp.cos(3 * x), np.cos(3), 1.0),
 }
 
@@ -39,6 +41,19 @@ def test_bounds_enclose_the_extreme_values_tightly(name, room):
     found = BranchAndBound().bound_output(program_of(call), SQUARE, ANYTHING, to_within(room))
     assert least - room <= found.lower <= least
     assert most <= found.upper <= most + room
+
+
+def test_values_may_reach_the_ends_of_what_is_allowed():
+    program = program_of(lambda x, y: x * y)
+    found = BranchAndBound().bound_output(program, SQUARE, (-1.0, 1.0), to_within(0.1))
+    assert -1.1 <= found.lower <= -1 and 1 <= found.upper <= 1.1
+
+
+def test_the_side_that_changes_the_output_most_is_divided():
+    program = program_of(KNOWN["bowl between the nodes"][0])
+    for box in ([[-1.0, 1.0], [-1e-3, 1e-3]], [[-1e-3, 1e-3], [-1.0, 1.0]]):
+        found = BranchAndBound().bound_output(program, np.array(box), ANYTHING, to_within(0.01))
+        assert 1 < found.boxes < 100 and np.isfinite(found.lower)
 
 
 def test_tighter_bounds_need_more_boxes():

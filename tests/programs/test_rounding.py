@@ -101,6 +101,14 @@ def test_values_near_the_largest_float32_are_not_bounded():
 
 
 @needs_compiler
+def test_the_bound_on_a_box_is_above_those_at_its_points():
+    parts = rounding_parts(program_of(lambda x: x * x * x + x, 1), IEEE, "v[0] = x[0];", [False])
+    kernel = compile_kernel(parts, 1)
+    _, upper, *_ = kernel.enclose(np.array([[0.1, 2.0]]))
+    assert upper >= max(kernel.enclose(np.array([[x, x]]))[1] for x in (0.1, 0.7, 1.9, 2.0))
+
+
+@needs_compiler
 def test_conditions_of_the_arguments_are_independent_of_those_of_the_program():
     """The first input is |x − ½|, by a condition; the program has a condition of its own."""
     program = program_of(lambda d, y: jnp.where(y < 0.5, d - 0.25, 0.25 - d) * (y - 0.5), 2)
