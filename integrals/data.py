@@ -19,6 +19,8 @@ from jaxtyping import Float, Shaped
 # A larger file is refused before it is read.
 MAX_BYTES = 1 << 30
 _SEED = 20200901
+# The squares of larger numbers, and their sums, overflow.
+_LARGEST = 1e150
 # The folder of the problem file that is being loaded.
 PROBLEM_FOLDER: ContextVar[Path | None] = ContextVar("PROBLEM_FOLDER", default=None)
 
@@ -80,7 +82,8 @@ def samples(points: Any, values: Any, sigma: Any = None, hold_out: int = 0) -> D
         spread = np.broadcast_to(np.asarray(sigma, float), y.shape).copy()
         _require(np.isfinite(spread) & (spread > 0), "sigma", spread, "a positive number")
     for name, column in (("the value", y), *((f"axis {k + 1}", c) for k, c in enumerate(x.T))):
-        _require(np.isfinite(column), name, column, "a finite number")
+        good = np.abs(column) <= _LARGEST
+        _require(good, name, column, f"a finite number, at most {_LARGEST:g} in size")
     numbers = np.column_stack([x, y, *([] if spread is None else [spread])])
     digest = hashlib.sha256(numbers.tobytes()).hexdigest()
     return Data(x, y, spread, _chosen(len(y), hold_out), "arrays", digest)
@@ -173,7 +176,8 @@ def _csv(content: bytes, path: Path) -> dict[str, np.ndarray]:
 def _number(field: str) -> float:
     """Return a field as a number. Text gives NaN, so that a column that is not used may hold it."""
     try:
-        return float(field)
+        # Python allows 1_000.
+        return math.nan if "_" in field else float(field)
     except ValueError:
         return math.nan
 

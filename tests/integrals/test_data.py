@@ -70,6 +70,11 @@ def test_a_file_beside_the_problem_file_is_found(file, monkeypatch):
         ("a,c\n1,2\n", "has no column 'b': allowed are a, c"),
         ("a,b\n1,two\n", "b of row 1 is nan: allowed is a finite number"),
         ("a,b\n1,2\n1,inf\n", "b of row 2 is inf"),
+        ("a,b\n1,2\n2,1_0\n", "b of row 2 is nan"),
+        (
+            "a,b\n1,2\n2,1e200\n",
+            "the value of row 2 is 1e+200: allowed is a finite number, at most",
+        ),
         (b"a,b\n\xff,1\n", "is no UTF-8 text"),
         ("a,b\n1," + 200_000 * "2", "data.csv is no CSV file: field larger than field limit"),
     ],
