@@ -34,7 +34,10 @@ class ComposedErrors:
 
 
 def errors_between(composed: np.ndarray, target: np.ndarray) -> ComposedErrors:
-    """Return the errors of composed pixels in [0, 1], which are first rounded to 8 bits."""
+    """Return the errors of composed pixels, which are first rounded to 8 bits.
+
+    `composed` and `target` are arrays of one shape, with values in [0, 1].
+    """
     return _errors((composed[rows], target[rows]) for rows in bands(len(composed)))
 
 
@@ -52,7 +55,7 @@ def _errors(parts: Iterable[tuple[np.ndarray, np.ndarray]]) -> ComposedErrors:
 
 
 def tiled(detail: Image, like: Image) -> np.ndarray:
-    """Return a detail's pixels in float64, repeated to the size of another image.
+    """Return a detail's pixels (height, width, channels), repeated to the size of another image.
 
     An alpha channel is left out. Raises ValueError if the size is no multiple of the detail's, or
     the numbers of channels differ.
