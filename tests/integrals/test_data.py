@@ -126,6 +126,13 @@ def test_an_archive_that_is_damaged_or_unpacks_to_too_much_is_refused(tmp_path, 
         with pytest.raises(ValueError, match=r"data\.npz is no NP[YZ]"):
             table(path, ["a"], "b")
     path.write_bytes(whole)
+    with monkeypatch.context() as small:
+        small.setattr(data, "_UNPACKED", 60_000)
+        with pytest.raises(ValueError, match=r"data\.npz unpacks to more than"):
+            table(path, ["a"], "b")
+        np.savez(path, a=np.arange(8192.0), b=np.zeros(8192))
+        assert len(table(path, ["a"], "b").values) == 8192
+    path.write_bytes(whole)
     monkeypatch.setattr(data, "MAX_BYTES", 60_000)
     with pytest.raises(ValueError, match=r"data\.npz unpacks to more than"):
         table(path, ["a"], "b")
