@@ -18,7 +18,12 @@ from jaxtyping import Float, Shaped
 
 # A larger file is refused before it is read.
 MAX_BYTES = 1 << 30
+# An archive may unpack to so many bytes, or to so many times its own size. Measured numbers do not
+# become much smaller, but a small file of zeros could fill the memory.
+_UNPACKED, _TIMES = 1 << 28, 8
 _SEED = 20200901
+# The squares of larger numbers, and their sums, overflow.
+_LARGEST = 1e150
 # The folder of the problem file that is being loaded.
 PROBLEM_FOLDER: ContextVar[Path | None] = ContextVar("PROBLEM_FOLDER", default=None)
 
@@ -80,7 +85,8 @@ def samples(points: Any, values: Any, sigma: Any = None, hold_out: int = 0) -> D
         spread = np.broadcast_to(np.asarray(sigma, float), y.shape).copy()
         _require(np.isfinite(spread) & (spread > 0), "sigma", spread, "a positive number")
     for name, column in (("the value", y), *((f"axis {k + 1}", c) for k, c in enumerate(x.T))):
-        _require(np.isfinite(column), name, column, "a finite number")
+        good = np.abs(column) <= _LARGEST
+        _require(good, name, column, f"a finite number, at most {_LARGEST:g} in size")
     numbers = np.column_stack([x, y, *([] if spread is None else [spread])])
     digest = hashlib.sha256(numbers.tobytes()).hexdigest()
     return Data(x, y, spread, _chosen(len(y), hold_out), "arrays", digest)
@@ -173,7 +179,8 @@ def _csv(content: bytes, path: Path) -> dict[str, np.ndarray]:
 def _number(field: str) -> float:
     """Return a field as a number. Text gives NaN, so that a column that is not used may hold it."""
     try:
-        return float(field)
+        # Python allows 1_000.
+        return math.nan if "_" in field else float(field)
     except ValueError:
         return math.nan
 
@@ -190,8 +197,9 @@ def _npy(content: bytes, path: Path) -> dict[str, np.ndarray]:
 def _npz(content: bytes, path: Path) -> dict[str, np.ndarray]:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            if sum(each.file_size for each in archive.infolist()) > MAX_BYTES:
-                raise ValueError(f"{path} unpacks to more than {MAX_BYTES >> 20} MiB")
+            allowed = min(MAX_BYTES, max(_UNPACKED, _TIMES * len(content)))
+            if sum(each.file_size for each in archive.infolist()) > allowed:
+                raise ValueError(f"{path} unpacks to more than {allowed >> 20} MiB")
             return {
                 each.removesuffix(".npy"): _numbers(
                     _array(io.BytesIO(archive.read(each)), path).ravel(), path

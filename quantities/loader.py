@@ -41,6 +41,10 @@ def load_problems(named: str) -> list[Problem]:
     path = Path(f"{file}.py" if wanted else named)
     if path.suffix != ".py" or not path.is_file():
         raise ValueError(f"{path} is no problem file: allowed is a Python file, FILE.py[:NAME]")
+    try:
+        path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"{path} cannot be read: {error.strerror or error}") from None
     # The interpreter names files by absolute paths.
     found = {problem.name: problem for problem in _declared(path.absolute())}
     if not found:

@@ -11,6 +11,8 @@ from fitting.points.scattered import data_points, scattered_points
 from integrals.reference import Axis, Estimate, Reference
 
 SEED = 20200819
+# The squares of larger values, and their sums, overflow.
+_LARGEST = 1e150
 
 
 @dataclass(frozen=True)
@@ -87,15 +89,15 @@ def _sample(points: np.ndarray, estimates: Estimate, form, goal: Goal, measure: 
 
 def _require_finite(points: np.ndarray, exact: np.ndarray, form: Form, goal: Goal) -> None:
     """Raise ValueError for exact values that no fit can be made to, with the first such point."""
-    bad = ~np.isfinite(exact) | (goal.relative & (exact == 0))
+    bad = ~(np.abs(exact) <= _LARGEST) | (goal.relative & (exact == 0))
     for k in np.flatnonzero(bad)[:1]:
         place = ", ".join(
             f"{axis.name} {x:.6g}" for axis, x in zip(form.axes, points[k], strict=True)
         )
-        allowed = "finite values that are not 0, for relative errors"
+        allowed = f"finite values up to {_LARGEST:g} in size"
         raise ValueError(
             f"{form.reference.name} is {exact[k]:g} at {place} and cannot be fitted there: "
-            f"allowed are {allowed if goal.relative else 'finite values'}"
+            f"allowed are {allowed}{', but not 0, for relative errors' if goal.relative else ''}"
         )
 
 

@@ -99,8 +99,8 @@ def bound_largest(
     boxes of the proof, which needs one thread. Raises ValueError for a ratio that is not above 1,
     and RuntimeError if the processor does not round upward.
     """
-    if not ratio > 1:
-        raise ValueError(f"upper ratio {ratio:g}: allowed is a number above 1")
+    if not 1 < ratio < inf:
+        raise ValueError(f"upper ratio {ratio:g}: allowed is a finite number above 1")
     began = time.monotonic()
     lower, at = _best_seed(kernel, box, seeds)
     if lower > 0:
@@ -146,8 +146,8 @@ def bound_largest_slowly(
     selection is bounded by the hull of both its cases, so that no proof may be found for a program
     that has some.
     """
-    if not ratio > 1:
-        raise ValueError(f"upper ratio {ratio:g}: allowed is a number above 1")
+    if not 1 < ratio < inf:
+        raise ValueError(f"upper ratio {ratio:g}: allowed is a finite number above 1")
     tried = box.mean(axis=1)[None] if seeds is None else np.clip(seeds, *box.T)
 
     def settled(below, above, least, most):

@@ -198,7 +198,7 @@ def _source(name: str) -> _Source:
 
 def _size(text: str) -> list[int]:
     parts = text.lower().split("x")
-    if not all(part.isdecimal() for part in parts):
+    if not all(part.isascii() and part.isdecimal() for part in parts):
         raise ValueError(f"size {text!r}: allowed are numbers of texels, such as 256 or 64x64")
     return [int(part) for part in parts]
 

@@ -130,6 +130,8 @@ def _require(
         raise ValueError("--to: code is written for NDFs that are linear in cos2 only")
     if to is not None:
         language(to)
+    if code is not None and code == out:
+        raise ValueError(f"--out and --code are both {out}: allowed are two files")
     for file in (out, code):
         if file is not None:
             require_writable_file(file)

@@ -120,7 +120,8 @@ def _from_csv(path: Path, data: bytes, axes: "Sequence[Axis]") -> "np.ndarray":
 
 def _number(path: Path, line: int, text: str) -> float:
     try:
-        value = float(text)
+        # Python allows 1_000.
+        value = math.nan if "_" in text else float(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):

@@ -1,7 +1,9 @@
 """Images from PNG, EXR and DDS files."""
 
 import io
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 
 import numpy as np
@@ -119,17 +121,38 @@ def _read_dds(data: bytes, name: str, max_edge: int) -> np.ndarray:
     return pixels[..., :2] if block == "BC5" else pixels
 
 
+@contextmanager
+def _silent_library() -> Generator[None]:
+    """Lose what OpenEXR prints, and writes to standard error itself; it raises errors too."""
+    try:
+        kept = os.dup(2)
+    except OSError:
+        yield
+        return
+    try:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        os.close(nowhere)
+        with redirect_stdout(io.StringIO()):
+            yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
 def _read_exr(data: bytes, name: str, max_edge: int) -> np.ndarray:
     library = optional_library("OpenEXR")
     try:
-        header = library.File(io.BytesIO(data), header_only=True).header()
+        with _silent_library():
+            header = library.File(io.BytesIO(data), header_only=True).header()
         (left, top), (right, bottom) = header["dataWindow"]
     # The library raises its own errors, and those of broken numbers.
     except Exception:
         raise _RefusedError("it is no EXR image that can be read") from None
     require_size(int(right) - int(left) + 1, int(bottom) - int(top) + 1, name, max_edge)
     try:
-        parts = library.File(io.BytesIO(data), separate_channels=True).parts
+        with _silent_library():
+            parts = library.File(io.BytesIO(data), separate_channels=True).parts
         channels = {key: each.pixels for key, each in parts[0].channels.items()}
     except Exception:
         raise _RefusedError("its pixels cannot be decoded") from None

@@ -16,7 +16,11 @@ COEFFICIENTS = packaged_table("q").coefficients
 
 
 def with_error(largest, **where):
-    off_grid = {**ERRORS["off_grid"], "max": largest, "rms": min(largest, 1e-4)}
+    off_grid = {
+        **ERRORS["off_grid"],
+        "max": largest,
+        "rms": min(largest, ERRORS["off_grid"]["rms"]),
+    }
     return {**ERRORS, "off_grid": {**off_grid, "where": where or off_grid["where"]}}
 
 
@@ -42,6 +46,17 @@ def test_a_changed_table_is_refused(tmp_path, changes, said):
     with pytest.raises(ValueError, match=message) as error:
         require_stated(entry)
     assert said in str(error.value)
+
+
+@pytest.mark.parametrize(("rms", "refused"), [(0.0, True), (4e-4, True), (1e-3, False)])
+def test_an_rms_error_that_is_far_too_small_is_refused(tmp_path, rms, refused):
+    errors = {**ERRORS, "off_grid": {**ERRORS["off_grid"], "rms": rms}}
+    entry = resolve(changed_table(tmp_path, errors=errors))
+    if not refused:
+        require_stated(entry)
+        return
+    with pytest.raises(ValueError, match=rf"its rms error of {rms:.4g} is at least 0\.004"):
+        require_stated(entry)
 
 
 @pytest.mark.parametrize(("part", "refused"), [(0.45, True), (0.9, True), (0.98, False)])

@@ -70,6 +70,11 @@ def test_a_file_beside_the_problem_file_is_found(file, monkeypatch):
         ("a,c\n1,2\n", "has no column 'b': allowed are a, c"),
         ("a,b\n1,two\n", "b of row 1 is nan: allowed is a finite number"),
         ("a,b\n1,2\n1,inf\n", "b of row 2 is inf"),
+        ("a,b\n1,2\n2,1_0\n", "b of row 2 is nan"),
+        (
+            "a,b\n1,2\n2,1e200\n",
+            "the value of row 2 is 1e+200: allowed is a finite number, at most",
+        ),
         (b"a,b\n\xff,1\n", "is no UTF-8 text"),
         ("a,b\n1," + 200_000 * "2", "data.csv is no CSV file: field larger than field limit"),
     ],
@@ -120,6 +125,13 @@ def test_an_archive_that_is_damaged_or_unpacks_to_too_much_is_refused(tmp_path, 
         path.write_bytes(content)
         with pytest.raises(ValueError, match=r"data\.npz is no NP[YZ]"):
             table(path, ["a"], "b")
+    path.write_bytes(whole)
+    with monkeypatch.context() as small:
+        small.setattr(data, "_UNPACKED", 60_000)
+        with pytest.raises(ValueError, match=r"data\.npz unpacks to more than"):
+            table(path, ["a"], "b")
+        np.savez(path, a=np.arange(8192.0), b=np.zeros(8192))
+        assert len(table(path, ["a"], "b").values) == 8192
     path.write_bytes(whole)
     monkeypatch.setattr(data, "MAX_BYTES", 60_000)
     with pytest.raises(ValueError, match=r"data\.npz unpacks to more than"):

@@ -354,7 +354,7 @@ def test_a_claim_is_proven_or_refuted_with_a_point():
 
 
 def test_a_ratio_that_is_not_above_one_is_refused():
-    with pytest.raises(ValueError, match="allowed is a number above 1"):
+    with pytest.raises(ValueError, match="allowed is a finite number above 1"):
         bound_largest(kernel_of(lambda x: x), UNIT, 1.0)
 
 

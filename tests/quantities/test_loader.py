@@ -81,6 +81,18 @@ def test_what_is_no_problem_file_is_refused_in_one_line(tmp_path, text, named, m
     assert "\n" not in str(caught.value)
 
 
+def test_a_file_that_cannot_be_read_is_refused_in_one_line(tmp_path, monkeypatch):
+    path = tmp_path / "mine.py"
+    path.touch()
+
+    def refuse(_):
+        raise PermissionError(13, "Permission denied", "mine.py")
+
+    monkeypatch.setattr("pathlib.Path.read_bytes", refuse)
+    with pytest.raises(ValueError, match=r"mine\.py cannot be read: Permission denied$"):
+        load_problems(str(path))
+
+
 def test_an_error_of_the_file_is_shown_by_its_own_lines_alone(tmp_path):
     path = tmp_path / "mine.py"
     path.write_text("def broken():\n    return 1 / 0\n\nbroken()\n")

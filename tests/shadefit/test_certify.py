@@ -68,7 +68,11 @@ def test_a_claim_that_is_wrong_is_refuted(capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("best/q-4", "--upper-ratio", "1"), "upper ratio 1: allowed is a number above 1"),
+        (("best/q-4", "--upper-ratio", "1"), "upper ratio 1: allowed is a finite number above 1"),
+        (
+            ("best/q-4", "--upper-ratio", "inf"),
+            "upper ratio inf: allowed is a finite number above 1",
+        ),
         (("best/q-4", "--at-most", "-1"), "--at-most -1: allowed is a positive number"),
         (("exact/q",), "exact/q has no coefficients"),
         (("best/q-4", "--rounding", "--at-most", "1"), "--at-most with --rounding"),

@@ -149,6 +149,19 @@ def test_broken_files_get_one_line(tmp_path, name):
             assert "\n" not in str(error)
 
 
+def test_a_library_says_nothing_beside_the_line(tmp_path, capfd):
+    path = tmp_path / "a.exr"
+    write_image(path, image_of(np.zeros((8, 8, 3)), "linear", "a"))
+    whole = path.read_bytes()
+    window = whole.index(b"dataWindow\0box2i\0") + 21
+    path.write_bytes(whole[:window] + struct.pack("<4i", 0, 0, 4095, 4095) + whole[window + 16 :])
+    with pytest.raises(ValueError, match="its pixels cannot be decoded"):
+        read_image(path, "linear")
+    assert capfd.readouterr() == ("", "")
+    os.write(2, b"heard")
+    assert capfd.readouterr().err == "heard"
+
+
 @pytest.mark.parametrize("size", [(MAX_EDGE + 1, 1), (1, MAX_EDGE + 1), (2**31 - 1, 2**31 - 1)])
 def test_huge_images_are_refused_before_they_are_decoded(tmp_path, size):
     path = tmp_path / "a.png"

@@ -123,6 +123,10 @@ def test_the_columns_of_a_file(tmp_path, capsys):
         (["ggx:0.2", "--to", "c"], "--to needs --code"),
         (["ggx:0.2", "--to", "fortran", "--verify"], "allowed: c, cpp"),
         (["ggx:0.2", "--to", "c", "--verify", "--linear-in", "angle"], "cos2 only"),
+        (
+            ["ggx:0.3", "-o", "a", "--to", "c", "--code", "a"],
+            "--out and --code are both a: allowed are two files",
+        ),
     ],
 )
 def test_bad_input_is_one_line(arguments, said, capsys):
