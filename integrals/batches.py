@@ -7,7 +7,7 @@ import numpy as np
 
 
 class Batches:
-    """Points (n, axes), with n > 0, in batches of one size.
+    """Points (n, axes), with n > 0, in batches of one size, which are `parts`.
 
     The last batch is filled with copies of the last point. The batches are on the device, for any
     number of functions that are evaluated at them.
@@ -16,16 +16,13 @@ class Batches:
     def __init__(self, points: np.ndarray, batch: int) -> None:
         self.count = len(points)
         filled = np.concatenate([points, np.repeat(points[-1:], -self.count % batch, axis=0)])
-        self._parts = [
+        self.parts = [
             jax.device_put(filled[first : first + batch]) for first in range(0, self.count, batch)
         ]
 
     def evaluate(self, function: Callable):
         """Return the arrays (batch, …) that `function` returns for each batch, joined to (n, …)."""
-        if len(self._parts) == 1:
-            # Nothing has to be joined, and the arrays are those of the device.
-            return jax.tree.map(lambda x: np.asarray(x)[: self.count], function(self._parts[0]))
-        parts = [function(each) for each in self._parts]
+        parts = [function(each) for each in self.parts]
         return jax.tree.map(lambda *each: np.concatenate(each)[: self.count], *parts)
 
 

@@ -1,8 +1,11 @@
 """A form's values, what must stay positive, and their derivatives, at many points.
 
-The programs are compiled once for a form, or once for all forms that have the same wider form
-(`Form.wider`), and for one number of points.
+The programs are compiled once for a form. All special cases of a wider form (`Form.wider`) have the
+same programs, which are therefore made for speed: values and what must stay positive come from one
+of them, and they take many points at a time.
 """
+
+from collections.abc import Callable, Sequence
 
 import jax
 import numpy as np
@@ -12,39 +15,51 @@ from fitting.form import Form
 from fitting.linearity import positive_of
 from integrals.batches import Batches
 
-# The number of points at which values are evaluated at once, and at which derivatives are.
-_BATCH, _BATCH_OF_SLOPES = 4096, 2048
+# The number of points at which values are evaluated at once, and at which derivatives are. Those
+# of a wider form are evaluated at as many points as its values.
+_BATCH, _BATCH_OF_SLOPES = 4096, 512
 
 
 class ValuesAt:
     """The values of a form at points (n, axes), and the numbers that must stay positive there.
 
-    Both come from one compiled program. Those of the last coefficients are kept, because a fit asks
-    for one after the other.
+    Those of the last coefficients are kept, because a fit asks for them several times.
     """
 
     def __init__(self, form: Form, points: np.ndarray) -> None:
         self._form, self._points = form, points
         self._batches: Batches | None = None
-        self._last: tuple[bytes, tuple[np.ndarray, np.ndarray]] | None = None
+        self._last: dict[str, np.ndarray] = {}
+        self._key = b""
 
     def values(self, c: np.ndarray) -> np.ndarray:
         """Return the values (n,) for flat coefficients. The array is not to be changed."""
-        return self._both(c)[0]
+        return self._at(c, "values")
 
     def rooms(self, c: np.ndarray) -> np.ndarray:
         """Return the numbers that must stay positive (n,). The array is not to be changed."""
-        return self._both(c)[1]
+        return self._at(c, "rooms")
 
-    def _both(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _at(self, c: np.ndarray, name: str) -> np.ndarray:
         key = c.tobytes()
-        if self._last is None or self._last[0] != key:
+        if key != self._key:
+            self._key, self._last = key, {}
+        if name not in self._last:
             if self._batches is None:
                 self._batches = Batches(self._points, _BATCH)
-            form, whole = _widest(self._form, c)
-            found = self._batches.evaluate(lambda x: _values_and_rooms(form, whole, x))
-            self._last = key, found
-        return self._last[1]
+            parts = self._batches.parts
+            if self._form.wider is None:
+                function = _VALUES[name]
+                self._last[name] = self._joined([function(self._form, c, x) for x in parts])
+            else:
+                form, whole = self._form.wider.form, self._form.wider.coefficients(c)
+                both = [_values_and_rooms(form, whole, x) for x in parts]
+                self._last["values"] = self._joined([each[0] for each in both])
+                self._last["rooms"] = self._joined([each[1] for each in both])
+        return self._last[name]
+
+    def _joined(self, parts: Sequence[Array]) -> np.ndarray:
+        return _together(parts)[: len(self._points)]
 
 
 class SlopesAt:
@@ -59,23 +74,30 @@ class SlopesAt:
 
     def values(self, c: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the derivatives of the values (rows, m) at the points with these indices."""
-        return self._evaluate(_slopes, c, rows)
+        return self._at(c, rows, "values")
 
     def rooms(self, c: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the derivatives of the numbers that must stay positive (rows, m)."""
-        return self._evaluate(_room_slopes, c, rows)
+        return self._at(c, rows, "rooms")
 
-    def _evaluate(self, function, c: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    def _at(self, c: np.ndarray, rows: np.ndarray, name: str) -> np.ndarray:
+        wider = self._form.wider
         if self._last is None or not np.array_equal(rows, self._last[0]):
-            self._last = rows, Batches(self._points[rows], _BATCH_OF_SLOPES)
-        form, whole = _widest(self._form, c)
-        found = self._last[1].evaluate(lambda x: function(form, whole, x))
-        return found if self._form.wider is None else found[:, self._form.wider.places]
+            batch = _BATCH_OF_SLOPES if wider is None else _BATCH
+            self._last = rows, Batches(self._points[rows], batch)
+        parts = self._last[1].parts
+        # One column after the other, as LAPACK takes them
+        if wider is None:
+            found = np.concatenate([_SLOPES[name](self._form, c, x) for x in parts])
+            return np.asfortranarray(found[: len(rows)])
+        function, whole = _WIDE_SLOPES[name], wider.coefficients(c)
+        found = _together([function(wider.form, whole, x) for x in parts])
+        return found[list(wider.places), : len(rows)].T
 
 
-def _widest(form: Form, c: np.ndarray) -> tuple[Form, np.ndarray]:
-    """Return the form to evaluate and its flat coefficients."""
-    return (form, c) if form.wider is None else (form.wider.form, form.wider.coefficients(c))
+def _together(parts: Sequence[Array]) -> np.ndarray:
+    """Join arrays along their last axis; a single one is only read where it is."""
+    return np.asarray(parts[0]) if len(parts) == 1 else np.concatenate(parts, axis=-1)
 
 
 def _value(form: Form, c: Array, point: Array) -> Array:
@@ -90,12 +112,19 @@ def _both(form: Form, c: Array, point: Array) -> tuple[Array, Array]:
     return _value(form, c, point), _room(form, c, point)
 
 
-def _at_points(function):
-    """Map a function of a form, coefficients and a point over points; compiled once for a form."""
+def _at_points(function: Callable, axis: int = 0) -> Callable:
+    """Map a function of a form, coefficients and a point over points; compiled once for a form.
+
+    `axis` is that of the points in what it returns.
+    """
     return jax.jit(
-        lambda form, c, points: jax.vmap(lambda p: function(form, c, p))(points), static_argnums=0
+        lambda form, c, points: jax.vmap(lambda p: function(form, c, p), out_axes=axis)(points),
+        static_argnums=0,
     )
 
 
+_slope, _room_slope = jax.grad(_value, 1), jax.grad(_room, 1)
+_VALUES = {"values": _at_points(_value), "rooms": _at_points(_room)}
+_SLOPES = {"values": _at_points(_slope), "rooms": _at_points(_room_slope)}
 _values_and_rooms = _at_points(_both)
-_slopes, _room_slopes = _at_points(jax.grad(_value, 1)), _at_points(jax.grad(_room, 1))
+_WIDE_SLOPES = {"values": _at_points(_slope, -1), "rooms": _at_points(_room_slope, -1)}

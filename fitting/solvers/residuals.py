@@ -67,15 +67,24 @@ def residuals(
 ) -> Residuals:
     """Return the weighted errors of a form as functions of its free coefficients.
 
-    `free` is a mask of the free coefficients; the others have their values in `fixed`. Both have an
-    element for each coefficient of the form. If `bounded`, values of the form are only allowed
-    between the ends of the codomain, with some distance from both.
+    `points` are (n, axes), the `exact` values and their `scale` (n,). `free` is a mask of the free
+    coefficients; the others have their values in `fixed`. Both have an element for each
+    coefficient. If `bounded`, values of the form are only allowed between the ends of the codomain,
+    with some distance from both.
     """
 
     def whole(z):
         c = fixed.copy()
         c[free] = z
         return c
+
+    all_free, unweighted = bool(free.all()), bool(np.all(scale == 1))
+
+    def chosen(columns):
+        return columns if all_free else columns[:, free]
+
+    def weighted(columns, rows):
+        return columns if unweighted else columns * scale[rows, None]
 
     # The exact value may itself be an end: the distance is at most half of the exact value's own.
     lower, upper = form.reference.codomain
@@ -94,9 +103,9 @@ def residuals(
     room_slopes = slopes if guarded is points else SlopesAt(form, guarded)
     return Residuals(
         lambda z: (at.values(whole(z)) - exact) * scale,
-        lambda z, rows: slopes.values(whole(z), rows)[:, free] * scale[rows, None],
+        lambda z, rows: weighted(chosen(slopes.values(whole(z), rows)), rows),
         lambda z: at_guarded.rooms(whole(z)),
-        lambda z, rows: room_slopes.rooms(whole(z), rows)[:, free],
+        lambda z, rows: chosen(room_slopes.rooms(whole(z), rows)),
         least,
         most,
         exact,

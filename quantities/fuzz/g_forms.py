@@ -170,7 +170,11 @@ def tied_g(*, poles: int, root: int) -> Form:
     which is a constant, plus a pole if `poles` is 1. The divisor 1 + c√d is there only if `root` is
     1. The coefficients are those of w, then c.
     """
+    places = (0, *((1, 2) if poles else ()), *((3,) if root else ()))
+    return _tied_form(poles, root, Wider(_widest_tie(), places, (0.0, 0.0, 1.0, 0.0)))
 
+
+def _tied_form(poles: int, root: int, wider: Wider | None) -> Form:
     def value(c, density: Scalar, cos_v: Scalar) -> Array:
         d, nu = jnp.asarray(density), jnp.asarray(cos_v)
         w = c[0] + c[1] / (c[2] + nu) if poles else c[0]
@@ -193,13 +197,13 @@ def tied_g(*, poles: int, root: int) -> Form:
         starts=(first, first * 1.3),
         shape={"poles": poles, "root": root},
         proofs=Proofs(positive=unguarded),
-        wider=None if poles and root else _wider_tie(poles, root),
+        wider=wider,
     )
 
 
-def _wider_tie(poles: int, root: int) -> Wider:
-    places = (0, *((1, 2) if poles else ()), *((3,) if root else ()))
-    return Wider(tied_g(poles=1, root=1), places, (0.0, 0.0, 1.0, 0.0))
+@functools.cache
+def _widest_tie() -> Form:
+    return _tied_form(1, 1, None)
 
 
 def candidates() -> Iterator[Form]:

@@ -68,7 +68,19 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
     """
     if terms + poles == 0:
         raise ValueError("terms + poles = 0: at least one is needed")
+    wider = None
+    if terms <= MOST_TERMS and poles <= MOST_POLES:
+        places = among_poles((terms, poles), (MOST_TERMS, MOST_POLES))
+        wider = Wider(_widest(structure), *places)
+    return _pole_form(structure, terms, poles, wider)
 
+
+@functools.cache
+def _widest(structure: str) -> Form:
+    return _pole_form(structure, MOST_TERMS, MOST_POLES, None)
+
+
+def _pole_form(structure: str, terms: int, poles: int, wider: Wider | None) -> Form:
     def value(c, density: Scalar) -> Array:
         return _surround(structure, jnp.asarray(density), lambda x: poles_value(c, terms, poles, x))
 
@@ -86,17 +98,8 @@ def pole_q(*, structure: str, terms: int, poles: int) -> Form:
             positive=lambda c, _: least_offset(c, terms, poles) - _LEAST_OFFSET,
             quotient=functools.partial(_as_quotient, structure, terms, poles) if poles else None,
         ),
-        wider=_wider(structure, terms, poles),
+        wider=wider,
     )
-
-
-def _wider(structure: str, terms: int, poles: int) -> Wider | None:
-    """Return the form with the most terms and poles; None for itself and for a larger one."""
-    most = MOST_TERMS, MOST_POLES
-    if (terms, poles) == most or terms > MOST_TERMS or poles > MOST_POLES:
-        return None
-    wide = pole_q(structure=structure, terms=MOST_TERMS, poles=MOST_POLES)
-    return Wider(wide, *among_poles((terms, poles), most))
 
 
 def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> FittedForm:
@@ -106,12 +109,20 @@ def _as_quotient(structure: str, terms: int, poles: int, fitted: FittedForm) -> 
     for the highest power, whose coefficient is 1.
     """
     above, below = quotient_of_poles(fitted.constants, terms, poles)
-    form = _quotient(structure, len(above), poles)
+    split, most, wider = len(above), MOST_TERMS + poles, None
+    if split <= most:
+        places = (*range(split), *range(most, most + poles))
+        wider = Wider(_widest_quotient(structure, poles), places, (0.0,) * (most + poles))
+    form = _quotient(structure, split, poles, wider)
     return form.fitted(np.concatenate([above, below[:-1]]))
 
 
 @functools.cache
-def _quotient(structure: str, split: int, poles: int) -> Form:
+def _widest_quotient(structure: str, poles: int) -> Form:
+    return _quotient(structure, MOST_TERMS + poles, poles, None)
+
+
+def _quotient(structure: str, split: int, poles: int, wider: Wider | None) -> Form:
     """Return the form with a quotient of polynomials: `split` coefficients above, degree `poles`.
 
     The highest power of the denominator has the coefficient 1.
@@ -124,11 +135,6 @@ def _quotient(structure: str, split: int, poles: int) -> Form:
 
         return _surround(structure, jnp.asarray(density), r)
 
-    most = MOST_TERMS + poles
-    wider = None
-    if split < most:
-        places = (*range(split), *range(most, most + poles))
-        wider = Wider(_quotient(structure, most, poles), places, (0.0,) * (most + poles))
     return Form(
         name="quotient-q",
         equation=f"{structure}, with a quotient of polynomials",

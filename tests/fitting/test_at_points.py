@@ -62,13 +62,15 @@ def coefficients(form: Form) -> np.ndarray:
 SPECIAL = [
     *q_forms.candidates(),
     *g_forms.candidates(),
-    *(q_forms._quotient("slope", split, 2) for split in range(2, 6)),
+    *(
+        q_forms._as_quotient(form.shape["structure"], *of, form.fitted(np.ones(form.size))).form
+        for form in q_forms.candidates()
+        if (of := (form.shape["terms"], form.shape["poles"]))[1]
+    ),
 ]
-# In the default tests a few forms of both wide rates, of all wide factors and of a tie
 FEW = [
     q_forms.pole_q(structure="slope", terms=0, poles=1),
     g_forms.decay_g(decay="power", rate="constant", factor="inverse"),
-    g_forms.decay_g(decay="power", rate="scaled", factor="pole"),
 ]
 
 

@@ -1,4 +1,10 @@
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +18,7 @@ from shadefit.commands.search import search
 from shadefit.outputs import SearchOutput
 
 GOAL = Goal("l2", rounding="float32")
+ROOT = Path(__file__).parents[2]
 
 
 def run(capsys, folder, *, rounding="float32"):
@@ -123,3 +130,69 @@ def test_jobs_that_cannot_be_are_refused(tmp_path, jobs, cluster, message):
     with pytest.raises(ValueError, match=message):
         search("q", norm="l2", out=tmp_path, jobs=jobs, cluster=cluster)
     assert list(tmp_path.iterdir()) == []
+
+
+def start_of_search(folder: Path, *options: str) -> subprocess.Popen:
+    """Start the command in a process of its own, without the cache of compiled programs."""
+    command = ["-m", "shadefit", "search", "q", "--budget", "7", "--norm", "l2", *options]
+    variables = {**os.environ, "PYTHONPATH": str(ROOT), "SHADEFIT_CACHE": "off"}
+    return subprocess.Popen(
+        [sys.executable, *command, "--out", str(folder)],
+        env=variables,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def end_of(started: subprocess.Popen, folder: Path) -> tuple[str, dict[str, bytes]]:
+    """Wait for a search. Returns its output without the folder's name, and the files."""
+    output, errors = started.communicate(timeout=600)
+    assert started.returncode == 0, errors
+    files = {each.name: each.read_bytes() for each in folder.iterdir()}
+    return output.replace(str(folder), ""), files
+
+
+def kill_while_busy(client, processes: dict[str, int], started: subprocess.Popen) -> int:
+    """Kill one of some workers, given by address and process, when it makes a fit."""
+    while started.poll() is None:
+        busy = [address for address, tasks in client.processing().items() if tasks]
+        for address in set(busy) & set(processes):
+            os.kill(processes[address], signal.SIGKILL)
+            return processes.pop(address)
+        time.sleep(0.02)
+    raise AssertionError("the search ended before a worker was killed")
+
+
+@pytest.mark.slow
+def test_killed_workers_of_a_cluster_lose_nothing(tmp_path, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    # Workers import the project from its folder.
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    alone, together = tmp_path / "alone", tmp_path / "together"
+    expected = end_of(start_of_search(alone), alone)
+    tables = [name for name in expected[1] if name.endswith(".json")]
+    assert len(tables) > 4
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        processes = client.run(os.getpid)
+        started = start_of_search(together, "--cluster", cluster.scheduler_address)
+        try:
+            # One is killed in its first fit, another one when some fits are done and others not.
+            killed = {kill_while_busy(client, processes, started)}
+            while started.poll() is None and not list(together.glob("*.json")):
+                time.sleep(0.02)
+            assert len(list(together.glob("*.json"))) < len(tables)
+            killed.add(kill_while_busy(client, processes, started))
+            assert len(killed) == 2
+            assert end_of(started, together) == expected
+        finally:
+            started.kill()
+            started.communicate()
+        # Other processes have taken the places of those that were killed.
+        client.wait_for_workers(2, timeout=120)
+        assert killed.isdisjoint(client.run(os.getpid).values())
