@@ -13,6 +13,7 @@ from integrals.piecewise.smith import smith_g1
 from quantities.piecewise.fit import fit_ndf
 from quantities.piecewise.targets import analytic_ndf
 from shadefit.figures.picture import Picture
+from shadefit.memory import give_back
 from shadefit.render.microfacet_sphere import (
     ggx_microfacets,
     lit_sphere,
@@ -160,10 +161,11 @@ def draw_spheres() -> Figure:
     for line, width in zip(panels, _WIDTHS, strict=True):
         target = analytic_ndf(f"ggx:{width}")
         fitted = fit_ndf(target, _SEGMENTS).profile
-        truth, own = (
-            lit_sphere(each, GOLD, size=_SPHERE)
-            for each in (ggx_microfacets(width), piecewise_microfacets(fitted))
-        )
+        pair = []
+        for each in (ggx_microfacets(width), piecewise_microfacets(fitted)):
+            pair.append(lit_sphere(each, GOLD, size=_SPHERE))
+            give_back()
+        truth, own = pair
         gap = np.clip(0.5 + _GAIN * (own - truth), 0, 1)
         for axes, image in zip(line, (to_srgb(truth), to_srgb(own), gap), strict=True):
             axes.imshow(image, interpolation="antialiased")

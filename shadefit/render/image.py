@@ -18,7 +18,10 @@ SAMPLES = 2
 LARGE, LARGE_SAMPLES = 720, 3
 # An image is rendered in bands of at most so many samples, because all at once would need
 # gigabytes.
-_BAND, _LARGE_BAND = 1 << 17, 1 << 17
+_BAND, _LARGE_BAND = 1 << 16, 1 << 16
+# Free memory is given back to the system after the first band, in which programs are compiled, and
+# then after each of so many.
+_BANDS_A_TRIM = 8
 
 
 Progress = Callable[[int, int], None]
@@ -49,8 +52,7 @@ def render_images(
 
             for image, band in zip(images, workers.map(pixels, wanted), strict=True):
                 image[top:bottom] = band
-            if number == 0:
-                # Everything is compiled now, which took memory.
+            if number % _BANDS_A_TRIM == 0:
                 trim()
     return images
 
@@ -75,7 +77,7 @@ def render_large(
         progress(number, len(bands))
         hits = scene.hits(size * samples, (top * samples, bottom * samples))
         images.append(_pixels(scene, settings, functions, hits, size, samples))
-        if number == 0:
+        if number % _BANDS_A_TRIM == 0:
             trim()
     return np.concatenate(images)
 

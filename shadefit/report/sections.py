@@ -12,6 +12,7 @@ from coefficients.table import Table
 from programs import count_operations
 from quantities import Problem
 from shadefit.figures.style import KINDS
+from shadefit.memory import give_back
 
 _COLUMNS = (
     "table",
@@ -36,7 +37,10 @@ def summary(chosen: Sequence[Problem], more: Sequence[Entry] = ()) -> str:
     head = "".join(
         f'<th scope="col"{_TEXT if column == "form" else ""}>{column}</th>' for column in _COLUMNS
     )
-    rows = [row for owner in chosen for row in _group(owner, more)]
+    rows = []
+    for owner in chosen:
+        rows += _group(owner, more)
+        give_back()
     return (
         '<div class="scroll" tabindex="0" role="group" aria-label="All tables">\n'
         f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n" + "\n".join(rows) + "\n</tbody>\n"
