@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coefficients.bundles import bundle
+from coefficients.bundles import Bundle, bundle
 from coefficients.catalogue import Entry
 from coefficients.code_header import cost_text, costs, header_of
 from coefficients.code_options import (
@@ -23,6 +23,8 @@ from fitting.points.grids import sobol_points
 from fitting.points.scattered import data_points
 from programs import (
     CallSequence,
+    Function,
+    Language,
     Program,
     Trial,
     count_operations,
@@ -112,25 +114,9 @@ def source_file(
     require_use(options, [entry.problem for entry in listed])
     chosen = [shaped(entry, options) for entry in listed]
     called = [prefixed(each.functions(kind, function_name), options.prefix) for each in chosen]
-    if hosted is not None and (spelled.key, kind) != (hosted.language, "float"):
-        raise ValueError(
-            f"bundle {options.bundle!r} is not for {spelled.name} in {kind}: allowed is "
-            f"{hosted.language} in float"
-        )
-    if hosted is not None and len(listed) > 1 and not hosted.several:
-        raise ValueError(f"bundle {options.bundle!r} is of {len(listed)} tables; allowed: one")
-    for entry, functions in zip(listed, called, strict=True):
-        if hosted is not None and functions[-1].result is not None:
-            raise ValueError(
-                f"bundle {options.bundle!r} is of functions of one value: {entry.name} has "
-                f"{functions[-1].result}"
-            )
+    if hosted is not None:
+        _require_bundle(hosted, options, spelled, kind, listed, called, constants)
     holds_code = hosted is None or hosted.holds_code
-    if not holds_code and (constants, options.layout) != ("inline", DEFAULTS.layout):
-        raise ValueError(
-            f"bundle {options.bundle!r} holds no code; allowed are constants 'inline' and layout "
-            f"{DEFAULTS.layout!r}"
-        )
     guard = _guard(listed, precision, function_name or options.together, options.prefix)
     printed = called
     if options.together is not None:
@@ -156,13 +142,11 @@ def source_file(
     # The source is first written without its header: if that is not possible, no time is spent on
     # measurements.
     written([{}] * len(listed))
-    command = ["shadefit", "export", *option_for(listed[0].problem)]
-    command += [entry.name for entry in listed]
-    command += ["--to", spelled.key] if holds_code else []
-    given = {"--precision": precision, "--name": function_name}
-    given |= {"--constants": None if constants == "inline" else constants}
-    command += [word for flag, value in given.items() if value for word in (flag, value)]
-    command += words_of(options)
+    if made_by is None:
+        given = {"--precision": precision, "--name": function_name}
+        given |= {"--constants": None if constants == "inline" else constants}
+        target = ["--to", spelled.key] if holds_code else []
+        made_by = _command(listed, target, given, options)
     headers = []
     for entry, functions in zip(chosen, called, strict=True):
         trial = trial_of(entry, kind)
@@ -170,12 +154,54 @@ def source_file(
         bare = write_source(functions, spelled, kind, constants=constants)
         # The function of all tables is not run for the error of one.
         run = bare if holds_code and printed is called else None
-        headers.append(header_of(entry, trial, spelled.key, run, made_by or command_text(command)))
+        headers.append(header_of(entry, trial, spelled.key, run, made_by))
     if printed is not called:
         ((name, cost),) = costs(printed[-1]).items()
         headers[-1] |= {"Cost of all together": f"{name}: {cost_text(cost)}"}
     headers[0] = {LICENCE_LABEL: LICENCE, **headers[0]}
     return written(headers)
+
+
+def _require_bundle(
+    hosted: Bundle,
+    options: CodeOptions,
+    spelled: Language,
+    precision: str,
+    entries: Sequence[Entry],
+    called: Sequence[tuple[Function, ...]],
+    constants: str,
+) -> None:
+    """Raise ValueError if a bundle cannot have these functions in this language."""
+    name = f"bundle {options.bundle!r}"
+    if (spelled.key, precision) != (hosted.language, "float"):
+        raise ValueError(
+            f"{name} is not for {spelled.name} in {precision}: allowed is {hosted.language} in "
+            "float"
+        )
+    if len(called) > 1 and not hosted.several:
+        raise ValueError(f"{name} is of {len(called)} tables; allowed: one")
+    for entry, functions in zip(entries, called, strict=True):
+        if functions[-1].result is not None:
+            raise ValueError(
+                f"{name} is of functions of one value: {entry.name} has {functions[-1].result}"
+            )
+    if not hosted.holds_code and (constants, options.layout) != ("inline", DEFAULTS.layout):
+        raise ValueError(
+            f"{name} holds no code; allowed are constants 'inline' and layout {DEFAULTS.layout!r}"
+        )
+
+
+def _command(
+    entries: Sequence[Entry],
+    target: list[str],
+    given: Mapping[str, str | None],
+    options: CodeOptions,
+) -> str:
+    """Return the command that writes the code of entries, with the options that are given."""
+    command = ["shadefit", "export", *option_for(entries[0].problem)]
+    command += [*(entry.name for entry in entries), *target]
+    command += [word for flag, value in given.items() if value for word in (flag, value)]
+    return command_text([*command, *words_of(options)])
 
 
 def _guard(

@@ -11,31 +11,35 @@ from typing import NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from integrals.reference import Estimate, Reference
+from integrals.reference import Estimate, Reference, Smooth
 
 # The numbers of nodes that are tried, and the least number of points for each node of a line.
-_COUNTS, _POINTS_A_NODE = (33, 65), 3
+_COUNTS, _POINTS_A_NODE = (17, 33, 65, 129), 2
 # Interpolation may add this to the error of a value, or as much as the error is.
 TOLERANCE = 1e-9
 # The Lebesgue constants of these nodes: interpolation multiplies errors at the nodes by no more.
-_LEBESGUE = {33: 3.17, 65: 3.61}
+_LEBESGUE = {17: 2.73, 33: 3.17, 65: 3.61, 129: 4.06}
 
 Evaluate = Callable[[np.ndarray], Estimate]
 
 
-def estimates_along_lines(reference: Reference, points: np.ndarray, exact: Evaluate) -> Estimate:
+def estimates_along_lines(
+    reference: Reference, smooth: Smooth, points: np.ndarray, exact: Evaluate
+) -> Estimate:
     """Evaluate a quantity at points (n, axes), with n > 0; `exact` does so point by point.
 
-    The quantity is smooth along its axis `smooth_along`. On each line along it that has enough of
-    the points, the values are those of the polynomial through 33 or 65 exact values. Its error is
-    at most the difference from the polynomial through every other one of them, because its
-    coefficients fall geometrically. Where this is above `TOLERANCE` and above the errors of the
-    exact values, and on all other lines, each point is evaluated by itself. Returns values and
-    errors, (n,) each.
+    The quantity is smooth along the axis of `smooth`. On each line along it that has enough of the
+    points, the values are those of the polynomial through 17 to 129 exact values, in the argument
+    or its logarithm. Its error is at most the difference from the polynomial through every other
+    one of them, because its coefficients fall geometrically. Where this is above `TOLERANCE` and
+    above the errors of the exact values, and on all other lines, each point is evaluated by itself.
+    Returns values and errors, (n,) each.
     """
-    along = [axis.name for axis in reference.axes].index(reference.smooth_along or "")
+    along = [axis.name for axis in reference.axes].index(smooth.axis)
     value, error = np.empty(len(points)), np.empty(len(points))
+    inside = reference.axes[along].contains(points[:, along])
     lines, members = _lines(points, along)
+    places = _places(smooth, np.where(inside, points[:, along], np.nan))
     rest, done = np.arange(len(lines)), np.zeros(len(lines), dtype=bool)
     found = _OnNodes(np.zeros((len(lines), 0)), np.zeros((len(lines), 0)))
     for count in _COUNTS:
@@ -43,15 +47,21 @@ def estimates_along_lines(reference: Reference, points: np.ndarray, exact: Evalu
         chosen, found = rest[enough], _OnNodes(found.value[enough], found.error[enough])
         if not len(chosen):
             break
-        nodes = _nodes(reference, along, count)
-        found = _evaluated(found, lines[chosen], along, nodes, exact)
+        nodes = _nodes(count)
+        at_nodes = _arguments(smooth, points[inside, along], nodes)
+        found = _evaluated(found, lines[chosen], along, at_nodes, exact)
         between = _matrix(nodes[::2], nodes[1::2])
         added = np.abs(found.value[:, ::2] @ between.T - found.value[:, 1::2]).max(axis=1)
         stated = found.error.max(axis=1)
         holds = added <= np.maximum(TOLERANCE, stated)
+        matrices: dict[bytes, np.ndarray] = {}
         for k in np.flatnonzero(holds):
             own = members[chosen[k]]
-            value[own] = _matrix(nodes, points[own, along]) @ found.value[k]
+            # The lines of a grid have their points at the same places.
+            same = places[own].tobytes()
+            if same not in matrices:
+                matrices = {same: _matrix(nodes, places[own])}
+            value[own] = matrices[same] @ found.value[k]
             error[own] = _LEBESGUE[count] * stated[k] + added[k]
         rest, found = chosen[~holds], _OnNodes(found.value[~holds], found.error[~holds])
         done[chosen[holds]] = True
@@ -60,8 +70,7 @@ def estimates_along_lines(reference: Reference, points: np.ndarray, exact: Evalu
         own = np.concatenate([members[k] for k in rest])
         alone = exact(points[own])
         value[own], error[own] = np.asarray(alone.value), np.asarray(alone.error)
-    outside = ~reference.axes[along].contains(points[:, along])
-    value[outside] = error[outside] = np.nan
+    value[~inside] = error[~inside] = np.nan
     return Estimate(jnp.asarray(value), jnp.asarray(error))
 
 
@@ -99,11 +108,26 @@ def _lines(points: np.ndarray, along: int) -> tuple[np.ndarray, list[np.ndarray]
     return points[first], np.split(order, ends)
 
 
-def _nodes(reference: Reference, along: int, count: int) -> np.ndarray:
-    """Return Chebyshev's points over the whole axis, both ends included."""
-    axis = reference.axes[along]
-    unit = (1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2
-    return axis.lower + (axis.upper - axis.lower) * unit
+def _nodes(count: int) -> np.ndarray:
+    """Return Chebyshev's points on [0, 1], both ends included."""
+    return (1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2
+
+
+def _places(smooth: Smooth, x: np.ndarray) -> np.ndarray:
+    """Map arguments, or their logarithms, to [0, 1], of which both ends are reached."""
+    y = np.log(x) if smooth.logarithmic else x
+    low, high = np.nanmin(y, initial=np.inf), np.nanmax(y, initial=-np.inf)
+    return (y - low) / (high - low) if low < high else np.zeros(len(y))
+
+
+def _arguments(smooth: Smooth, x: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return the arguments at `places` between the least and the largest of x."""
+    low, high = x.min(), x.max()
+    if smooth.logarithmic:
+        between = low * np.exp(np.log(high / low) * places)
+    else:
+        between = low + (high - low) * places
+    return np.clip(between, low, high)
 
 
 def _matrix(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:

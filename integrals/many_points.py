@@ -18,7 +18,7 @@ from integrals.along_lines import estimates_along_lines
 from integrals.batches import in_batches
 from integrals.compilation import jit_for_few_calls
 from integrals.devices import all_devices, spread
-from integrals.reference import Estimate, Reference
+from integrals.reference import Estimate, Reference, require_float64
 
 # A quantity with smaller batches has so many nodes at a point that one point fills the cache.
 _SMALL_BATCH = 256
@@ -37,13 +37,15 @@ def estimates_at_many(reference: Reference, points: np.ndarray) -> Estimate:
     if reference.batch >= _SMALL_BATCH:
         return reference.estimates(points)
     exact = functools.partial(_in_groups, reference)
-    if reference.smooth_along is not None:
-        return estimates_along_lines(reference, points, exact)
+    for smooth in reversed(reference.smooth_along):
+        exact = functools.partial(estimates_along_lines, reference, smooth, exact=exact)
     return exact(points)
 
 
 def _in_groups(reference: Reference, points: np.ndarray) -> Estimate:
     """Evaluate points (n, axes), with n > 0; those with the same needs together."""
+    if reference.many is not None:
+        return _by_rule_for_many(reference, points)
     order = np.lexsort(points.T[::-1])
     groups: dict[tuple[tuple[str, Any], ...], list[np.ndarray]] = {}
     for first in range(0, len(points), _BLOCK):
@@ -58,6 +60,20 @@ def _in_groups(reference: Reference, points: np.ndarray) -> Estimate:
         found = in_batches(one_by_one, points[index], _AT_ONCE * len(devices))
         value[index], error[index] = np.asarray(found.value), np.asarray(found.error)
     return Estimate(jnp.asarray(value), jnp.asarray(error))
+
+
+def _by_rule_for_many(reference: Reference, points: np.ndarray) -> Estimate:
+    devices = all_devices()
+    found = in_batches(_many(reference, devices), points, _AT_ONCE * len(devices))
+    inside = np.all([axis.contains(points[:, k]) for k, axis in enumerate(reference.axes)], axis=0)
+    return Estimate(*(jnp.where(inside, each, jnp.nan) for each in found))
+
+
+@functools.lru_cache(maxsize=16)
+def _many(reference: Reference, devices: tuple[Device, ...]) -> Callable[[np.ndarray], Estimate]:
+    require_float64()
+    assert reference.many is not None
+    return jit_for_few_calls(spread(reference.many, devices))
 
 
 @functools.lru_cache(maxsize=16)

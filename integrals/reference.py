@@ -129,6 +129,14 @@ def box_of(axes: tuple[Axis, ...]) -> np.ndarray:
     return np.array([(axis.lower, axis.upper) for axis in axes])
 
 
+@dataclass(frozen=True)
+class Smooth:
+    """An axis along which a quantity is analytic, in the argument or in its logarithm."""
+
+    axis: str
+    logarithmic: bool = False
+
+
 # Compared and hashed by identity (eq=False): JAX takes a reference as a static argument.
 @dataclass(frozen=True, eq=False)
 class Reference:
@@ -143,8 +151,10 @@ class Reference:
     returns keyword arguments of the best leg, such as the number of quadrature nodes needed there.
     `proof_options` are arguments for proofs, which need few but more exact values.
     `codomain` is the interval that contains all exact values; proofs of range hold forms to it.
-    `smooth_along` is the name of an axis along which many values may be interpolated
-    (`integrals.along_lines`); None: none is.
+    `smooth_along` has the axes along which many values may be interpolated
+    (`integrals.along_lines`). `many` takes points (n, axes) of the domain and
+    returns the values of another rule, with errors, that is faster than the best leg; None: there
+    is none. Only `integrals.many_points` uses these two.
 
     A quantity that is only known by its `data` has no leg: it has values at the data's own points.
     A quantity that is only known by a table has neither legs nor data.
@@ -164,7 +174,8 @@ class Reference:
     proof_options: Mapping[str, Any] = field(default_factory=dict)
     codomain: tuple[float | int, float | int] = (0.0, 1.0)
     data: Data | None = None
-    smooth_along: str | None = None
+    smooth_along: tuple[Smooth, ...] = ()
+    many: Callable[[Array], Estimate] | None = None
 
     @property
     def legs(self) -> dict[str, Leg]:

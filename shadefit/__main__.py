@@ -39,7 +39,13 @@ def main() -> None:
         for each in handled:
             signal.signal(each, lambda *_: None)
         signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-        threading.Thread(target=_wait_for_signal, args=[reader, handled], daemon=True).start()
+        waiting = threading.Thread(target=_wait_for_signal, args=[reader, handled], daemon=True)
+        try:
+            waiting.start()
+        except RuntimeError:
+            # The system allows no further thread: signals end the process as they do others.
+            for each in handled:
+                signal.signal(each, signal.SIG_DFL)
     from shadefit.cli import main as run
     from shadefit.compilation_cache import use_cache
 

@@ -37,8 +37,9 @@ def values(of: Problem | Reference | FittedForm, points: np.ndarray) -> np.ndarr
 def estimates(of: Problem | Reference, points: np.ndarray) -> Estimate:
     """Return the exact values of a quantity at many points, and their errors.
 
-    As `values`, for a quantity or its reference. An integral without a closed form, such as R, is
-    fastest on grids: points that share all arguments but one are evaluated together.
+    As `values`, for a quantity or its reference: value and error are (…) each. An integral without
+    a closed form, such as R, is fastest on grids: points that share all arguments but one are
+    evaluated together.
     """
     reference = of.reference if isinstance(of, Problem) else of
     rows, shape = _rows(reference.axes, points)

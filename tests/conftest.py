@@ -15,6 +15,8 @@ import jax  # noqa: E402
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
 
+from shadefit import memory  # noqa: E402
+
 jax.config.update("jax_enable_x64", True)
 # XLA reads them when it compiles for the first time.
 jax.jit(lambda x: x + 1)(0.0)
@@ -47,6 +49,22 @@ SWEEPS = (
     "test_the_largest_error_is_not_overstated",
     "test_the_range_of_a_table_is_proven_anew",
 )
+
+# If a process of tests is larger than this, in bytes, the next module of tests begins without the
+# programs that others compiled. A process of the slow tests would grow to 5 GB.
+LARGEST_START = 2_000_000_000
+# What is left then may be large too. So much more is compiled before it is dropped again.
+GROWTH = 1_000_000_000
+_left = [0]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _memory_of_other_modules():
+    """Drop what other modules compiled, if it takes much memory."""
+    if (memory.resident() or 0) > max(LARGEST_START, _left[-1] + GROWTH):
+        memory.give_back(kept_below=0)
+        _left.append(memory.resident() or 0)
+
 
 # A run that fails must fail again on the next machine. `--hypothesis-profile default` draws others.
 settings.register_profile("repeatable", derandomize=True)

@@ -12,8 +12,9 @@ _UNORMS = {"unorm16": np.uint16, "unorm8": np.uint8}
 
 
 def encoded(values: np.ndarray, texel: Texel) -> tuple[np.ndarray, tuple[float, float]]:
-    """Return values as texels of a type, and the values that the texels 0 and 1 stand for.
+    """Return values (…) as texels (…) of a type, and the values of the texels 0 and 1.
 
+    For floats these are 0 and 1, else the least and the largest value unless all are in [0, 1].
     Raises ValueError for values that are too large for the type.
     """
     if texel in _FLOATS:
@@ -32,7 +33,7 @@ def encoded(values: np.ndarray, texel: Texel) -> tuple[np.ndarray, tuple[float, 
 
 
 def decoded(stored: np.ndarray, span: tuple[float, float]) -> np.ndarray:
-    """Return the values that texels stand for, in float64."""
+    """Return the values (…) of texels (…) in float64; `span` has those of the texels 0 and 1."""
     values = stored.astype(float)
     if np.issubdtype(stored.dtype, np.integer):
         values = values / np.iinfo(stored.dtype).max

@@ -188,7 +188,7 @@ def texel_centres(size: Sequence[int], centres: Centres) -> np.ndarray:
 
 
 def fraction_on(axis: Axis, values: np.ndarray) -> np.ndarray:
-    """Map values on an axis to fractions in [0, 1]: the inverse of `Axis.place`."""
+    """Map values (…) on an axis to fractions (…) in [0, 1]: the inverse of `Axis.place`."""
     width = axis.upper - axis.lower
     if axis.scale == "logarithmic":
         return np.log(values / axis.lower) / np.log(axis.upper / axis.lower)

@@ -1,5 +1,6 @@
 """OpenEXR files without compression, as OpenEXR's "File Layout" document describes them."""
 
+import io
 import struct
 
 import numpy as np
@@ -40,9 +41,9 @@ def write_exr(channels: dict[str, np.ndarray], pixel: str = "<f4") -> bytes:
     first = len(header) + 8 * height
     offsets = struct.pack(f"<{height}Q", *(first + line * y for y in range(height)))
     # Each line of the image has its number, its size, and then a row of each channel.
-    lines = np.zeros((height, line), np.uint8)
+    file = io.BytesIO()
+    file.write(header + offsets)
     for y in range(height):
-        lines[y, :8] = np.frombuffer(struct.pack("<2i", y, line - 8), np.uint8)
-        row = np.stack([channels[name][y].astype(pixel) for name in names])
-        lines[y, 8:] = row.reshape(-1).view(np.uint8)
-    return b"".join([header, offsets, lines.data])
+        file.write(struct.pack("<2i", y, line - 8))
+        file.write(np.stack([channels[name][y].astype(pixel) for name in names]).tobytes())
+    return file.getvalue()

@@ -25,7 +25,8 @@ def poles_value(coefficients, terms: int, poles: int, x: Array) -> Array:
 def quotient_of_poles(coefficients, terms: int, poles: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the same function as a quotient: the coefficients of both polynomials in x.
 
-    They are in rising powers. The highest one of the denominator is 1.
+    Those of the numerator and of the denominator (`poles` + 1,) are in rising powers. The last one
+    of the denominator is 1.
     """
     c = np.asarray(coefficients, float)
     factors = [np.array([b, 1.0]) for b in c[terms + 1 :: 2]]
@@ -80,7 +81,7 @@ def poles_text(terms: int, poles: int, x: str) -> str:
 
 
 def pole_starts(terms: int, poles: int) -> tuple[np.ndarray, ...]:
-    """Return starts of a fit: the polynomial is zero, and the poles are at several distances.
+    """Return starts (coefficients,) of a fit: a polynomial of zero, poles at several distances.
 
     The distances are those from x = 0. Without poles there is one start, zero.
     """

@@ -50,7 +50,7 @@ def surface_text(degree: int, x: str, y: str, first: str) -> str:
 def flat_start(
     values: list[float], degree: int, slopes: dict[int, tuple[float, float]] | None = None
 ) -> np.ndarray:
-    """Return the coefficients of surfaces that have the constant `values`.
+    """Return the flat coefficients of surfaces that have the constant `values`.
 
     `slopes` maps the numbers of some surfaces to their slopes in x and in y, which are added.
     Surfaces of degree 0 have no slopes.

@@ -74,7 +74,10 @@ def problem_at(
     free: np.ndarray | None = None,
     fixed: np.ndarray | None = None,
 ) -> Residuals:
-    """Return the residuals as functions of the free coefficients; by default all are free."""
+    """Return the residuals at a sample as functions of the free coefficients; by default of all.
+
+    `free`, a mask, and `fixed`, the values of the others, have an element for each coefficient.
+    """
     free = np.full(form.size, True) if free is None else free.copy()
     fixed = np.zeros(form.size) if fixed is None else fixed.copy()
     return residuals(form, sample.points, sample.exact, sample.scale, free, fixed, goal.bounded)

@@ -170,7 +170,11 @@ def _rows(matrix, limit, some=None, column=None, weight=None) -> tuple[np.ndarra
 
 
 def solve_program(cost, matrix, limit, bounds) -> np.ndarray | None:
-    """Return the z that minimises cost·z with matrix·z ≤ limit and bounds; None if HiGHS fails."""
+    """Return the z (n,) that minimises cost·z with matrix·z ≤ limit; None if HiGHS fails.
+
+    `cost` (n,), `matrix` (m, n) and `limit` (m,) may be any sequences. `bounds` has a pair for each
+    z, or one for all, in which None stands for no bound.
+    """
     from scipy.optimize import linprog  # noqa: PLC0415  slow to import
 
     for tolerance in _TOLERANCES:

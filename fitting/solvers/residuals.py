@@ -67,9 +67,10 @@ def residuals(
 ) -> Residuals:
     """Return the weighted errors of a form as functions of its free coefficients.
 
-    `free` is a mask of the free coefficients; the others have their values in `fixed`. Both have an
-    element for each coefficient of the form. If `bounded`, values of the form are only allowed
-    between the ends of the codomain, with some distance from both.
+    `points` are (n, axes), the `exact` values and their `scale` (n,). `free` is a mask of the free
+    coefficients; the others have their values in `fixed`. Both have an element for each
+    coefficient. If `bounded`, values of the form are only allowed between the ends of the codomain,
+    with some distance from both.
     """
 
     def whole(z):

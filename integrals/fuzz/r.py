@@ -8,9 +8,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from integrals.fuzz.lights_about_fibre import estimates_about_fibre
 from integrals.fuzz.ps import ALPHA, THETA_F, fraction_at
 from integrals.monte_carlo import Sequence, indicator, mean_estimate, unit_points
-from integrals.reference import Estimate, Reference, leg
+from integrals.reference import Estimate, Reference, Smooth, leg
 from integrals.rules.interval import checked_rule, gauss_legendre
 from integrals.sampling import Sampling
 from shading import direction, fiber_direction, fiber_root, reflect, visible_normal
@@ -92,5 +93,8 @@ R = Reference(
     proof_options={"nodes": _NODES_LOW_ALPHA},
     quadrature=quadrature,
     monte_carlo=monte_carlo,
-    smooth_along="theta_f",
+    # R is analytic in θf where |sinh Im θf| < α/√(1 − α²), and in α where Re α > 0
+    # (docs/r-theorem.md).
+    smooth_along=(Smooth("theta_f"), Smooth("alpha", logarithmic=True)),
+    many=estimates_about_fibre,
 )

@@ -29,7 +29,7 @@ Image = Callable[[Interval], Interval]
 
 
 def outward(lower: np.ndarray, upper: np.ndarray, ulps: int = 1) -> Interval:
-    """Move bounds outwards by units in the last place."""
+    """Move bounds (…) outwards by `ulps` units in the last place."""
     for _ in range(ulps):
         lower, upper = np.nextafter(lower, -np.inf), np.nextafter(upper, np.inf)
     return Interval(lower, upper)
@@ -178,8 +178,8 @@ def acos(a: Interval) -> Interval:
 def _multiples_of_pi(a: Interval, offset: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and the last whole number k with (k + offset)·π in a, or near its ends."""
     low, high = a.lower / np.pi - offset, a.upper / np.pi - offset
-    below, above = (np.maximum(_NEAR, _RELATIVELY_NEAR * np.abs(each)) for each in (low, high))
-    return np.ceil(low - below), np.floor(high + above)
+    room = np.maximum(_NEAR, _RELATIVELY_NEAR * np.maximum(np.abs(low), np.abs(high)))
+    return np.ceil(low - room), np.floor(high + room)
 
 
 def cos(a: Interval) -> Interval:

@@ -31,7 +31,10 @@ def enclose(program: Program, lower: np.ndarray, upper: np.ndarray) -> list[Inte
 
 
 def enclose_with_slopes(program: Program, lower: np.ndarray, upper: np.ndarray) -> list[Enclosure]:
-    """Return the bounds of `enclose` together with bounds of the gradient on each box."""
+    """Return the bounds of `enclose` together with bounds of the gradient on each box.
+
+    `lower` and `upper` (boxes, inputs) are the corners of the boxes.
+    """
     inputs = [_variable(k, lower, upper) for k in range(lower.shape[1])]
     middle = (lower + upper) / 2
     centre = [Interval(x, x) for x in middle.T]

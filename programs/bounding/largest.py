@@ -140,10 +140,11 @@ def bound_largest(
 def bound_largest_slowly(
     program: Program, box: np.ndarray, ratio: float, *, seeds: np.ndarray | None = None
 ) -> LargestValue:
-    """Do the same for the only output of a program, without a compiler.
+    """Do the same as `bound_largest` for the only output of a program, without a compiler.
 
-    It is about a hundred times slower. A selection is bounded by the hull of both its cases, so
-    that no proof may be found for a program that has some.
+    `box` is (inputs, 2), and `seeds` are places (n, inputs). It is about a hundred times slower. A
+    selection is bounded by the hull of both its cases, so that no proof may be found for a program
+    that has some.
     """
     if not ratio > 1:
         raise ValueError(f"upper ratio {ratio:g}: allowed is a number above 1")
@@ -188,7 +189,10 @@ def _best_seed(
 def uphill(
     kernel: Kernel, box: np.ndarray, lower: float, at: tuple[float, ...]
 ) -> tuple[float, tuple[float, ...]]:
-    """Return a larger |error| near a point and its place, by random steps that become shorter."""
+    """Return a larger |error| near a point and its place, by random steps that become shorter.
+
+    `box` (sides, 2) is not left. `lower` is the |error| at the point `at` (sides,).
+    """
     rng, sides = np.random.default_rng(0), box[:, 1] - box[:, 0]
     for radius in np.geomspace(0.02, 1e-7, _RADII):
         for step in rng.normal(size=(_STEPS, kernel.sides)) * radius * sides:

@@ -32,6 +32,7 @@ from programs.operations import OPERATIONS
 from programs.program import Operand, Program, Step, is_value
 
 _KERNEL = Path(__file__).parent / "kernel" / "rounding.h"
+_MOST_CONDITIONS = 64
 _CONDITIONS = ("lt", "le", "gt", "ge", "eq", "ne")
 _COMPARED = {"lt": "lt2({0}, {1})", "le": "le2({0}, {1})", "eq": "eq2({0}, {1})"}
 _COMPARED |= {"gt": "lt2({1}, {0})", "ge": "le2({1}, {0})", "ne": "eq2({0}, {1})"}
@@ -95,14 +96,13 @@ def rounding_parts(
     """
     plan = _plan(program, model)
     error = "\n    ".join([*_inputs(plan, arguments, rounded_inputs), *_body(plan)])
-    code = [f"static jet error_of(boxes *K, const jet *x) {{\n    {error}\n}}"]
+    others = f"__COUNTER__ <= {_MOST_CONDITIONS - _conditions(program)}"
+    code = [f'_Static_assert({others}, "at most {_MOST_CONDITIONS} conditions");']
+    code += [f"static jet error_of(boxes *K, const jet *x) {{\n    {error}\n}}"]
     if _conditions(program):
-        value = "\n    ".join([*_inputs(plan, arguments, rounded_inputs), *_values(plan, False)])
-        result = operand_name(program.outputs[0], lambda _: None)
-        code.append(
-            f"static jet value_of(boxes *K, const jet *x) {{\n    {value}\n    "
-            f"return JET({result});\n}}"
-        )
+        given = [*_inputs(plan, arguments, rounded_inputs), *_values(plan)]
+        value = "\n    ".join([*given, *_exact_values(program)])
+        code.append(f"static jet value_of(boxes *K, const jet *x) {{\n    {value}\n}}")
         entry = "return over_outcomes(K, x, error_of, value_of);"
     else:
         entry = "return error_of(K, x);"
@@ -115,8 +115,8 @@ def _conditions(program: Program) -> int:
 
 
 def _plan(program: Program, model: RoundingModel) -> _Plan:
-    if _conditions(program) > 64:
-        raise ValueError(f"{program.name}: {_conditions(program)} conditions; allowed: at most 64")
+    if (count := _conditions(program)) > _MOST_CONDITIONS:
+        raise ValueError(f"{program.name}: {count} conditions; allowed: at most {_MOST_CONDITIONS}")
     first, errors, constants, wanted = len(program.inputs), {}, {}, set()
     last = first + len(program.steps)
     for number, step in enumerate(program.steps, first):
@@ -169,17 +169,18 @@ def _inputs(plan: _Plan, arguments: str, rounded_inputs: Sequence[bool]) -> list
     return lines
 
 
-def _values(plan: _Plan, with_errors: bool = True) -> list[str]:
+def _values(plan: _Plan) -> list[str]:
     """Write the values of all steps: p of the exact and v of the rounded result."""
     lines, program, condition = [], plan.program, 0
     for constant, number in plan.constants.items():
-        ends = sorted([constant, _float32(constant)]) if with_errors else [constant] * 2
+        ends = sorted([constant, _float32(constant)])
         lines.append(f"jet v{number} = inexact(K, {', '.join(map(c_number, ends))});")
     for number, step in enumerate(program.steps, len(program.inputs)):
         operands = [operand_name(each, plan.leaf) for each in step.operands]
         if step.operation in _CONDITIONS:
             given = _COMPARED[step.operation].format(*(f"JET({each})" for each in operands))
-            decided = f"decide(K, {condition}, {given})"
+            # Conditions of the code that computes the arguments are numbered from zero.
+            decided = f"decide(K, {_MOST_CONDITIONS - 1 - condition}, {given})"
             decided = f"not1({decided})" if step.operation == "ne" else decided
             lines.append(f"truth v{number} = {decided};")
             condition += 1
@@ -187,16 +188,34 @@ def _values(plan: _Plan, with_errors: bool = True) -> list[str]:
         text = f"{step.operation.upper()}({', '.join(operands)})"
         if OPERATIONS[step.operation].gives == "bool":
             lines.append(f"truth v{number} = {text};")
-        elif number in plan.errors and with_errors:
+        elif number in plan.errors:
             lines += [
                 f"jet p{number} = {text};",
                 f"jet v{number} = {_rounded(number, plan.errors[number], operands)};",
             ]
-        elif with_errors:
-            lines += [f"jet p{number} = {text};", f"jet v{number} = p{number};"]
         else:
-            lines.append(f"jet v{number} = {text};")
+            lines += [f"jet p{number} = {text};", f"jet v{number} = p{number};"]
     return lines
+
+
+def _exact_values(program: Program) -> list[str]:
+    """Write w, the results without rounding, and return that of the program.
+
+    Conditions are those of rounded values: they have the outcome that rounding may give, also where
+    the exact values have another one.
+    """
+    lines, first = [], len(program.inputs)
+
+    def name(operand: Operand) -> str:
+        step = program.steps[operand - first] if is_value(operand) and operand >= first else None
+        is_exact = step is not None and OPERATIONS[step.operation].gives == "real"
+        return f"w{operand}" if is_exact else operand_name(operand, lambda _: None)
+
+    for number, step in enumerate(program.steps, first):
+        if OPERATIONS[step.operation].gives == "real":
+            operands = ", ".join(map(name, step.operands))
+            lines.append(f"jet w{number} = {step.operation.upper()}({operands});")
+    return [*lines, f"return JET({name(program.outputs[0])});"]
 
 
 def _rounded(number: int, error: OperationError, operands: Sequence[str]) -> str:

@@ -183,10 +183,11 @@ def fit_lit_fraction(exponent: int = LIT_EXPONENT) -> Descent:
     alpha, theta_f, cos_vn, phi = sobol_points(LIT_AXES, exponent, SEED).T
     points = np.stack([alpha, theta_f, np.arccos(cos_vn), phi], axis=1)
     exact = E_LIT.values(points)
-    cos_vt, scattered = map(jnp.asarray, jax.jit(jax.vmap(seen))(*points.T))
+    cos_vt, scattered = jax.jit(jax.vmap(seen))(*points.T)
+    by_constants = jax.vmap(lit_by_constants, in_axes=(None, 0, 0, 0))
 
     def residual(k):
-        return lit_by_constants(tuple(k), 1 - scattered, cos_vt, alpha) - exact
+        return by_constants(tuple(k), 1 - scattered, cos_vt, alpha) - exact
 
     compiled, slopes = jax.jit(residual), jax.jit(jax.jacfwd(residual))
     return descend(

@@ -41,7 +41,7 @@ def over_alpha(lower: float, upper: float, nodes: int) -> float:
 
 
 def complex_fibre(alpha: float, imaginary: np.ndarray) -> np.ndarray:
-    """Bound |1 − P_s| for a fibre whose direction has an imaginary part of this length."""
+    """Bound |1 − P_s| (…) for fibres whose directions have imaginary parts of lengths (…)."""
     q = (1 - alpha**2) * (imaginary / alpha) ** 2
     return np.where(q < 1, np.maximum(1 - q, 1e-300) ** -2.5, np.inf)
 
@@ -96,8 +96,8 @@ def imaginary_parts(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Bound the lengths of the imaginary parts of h and of u, for z = x + iy with cos θu = sin²z.
 
-    x is between `first` and `last`, and y at most the given one. The bounds are infinite where the
-    real part of sin²z might not be positive.
+    x is between `first` and `last`, and y at most the given one, arrays of one shape. The bounds
+    are infinite where the real part of sin²z might not be positive.
     """
     fine = (first > 0) & (last < np.pi) & (y < 1)
     first, last = np.where(fine, first, 1.0), np.where(fine, last, 1.0)

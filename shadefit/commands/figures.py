@@ -17,6 +17,7 @@ def figures(
     """Draw pictures as PNG and SVG: the figures of the supplement, errors, and costs."""
     from coefficients.files import require_writable, write_whole_bytes
     from shadefit.figures import drawable, pictures, render, require_libraries
+    from shadefit.memory import give_back
     from shadefit.progress import stages
     from shadefit.terminal import print_lines
 
@@ -39,5 +40,6 @@ def figures(
                 path = out / f"{name}.{extension}"
                 write_whole_bytes(path, data)
                 files.append(path)
+            give_back()
             stage.advance()
     print_lines(*files)

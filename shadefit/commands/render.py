@@ -143,6 +143,7 @@ def _write_sweep(scene: "Scene", settings: "Settings", out: Path, json: bool) ->
 def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, json: bool) -> None:
     from coefficients.files import write_whole_bytes
     from coefficients.textures.exr import write_exr
+    from shadefit.memory import give_back
     from shadefit.outputs import RenderOutput
     from shadefit.progress import stages
     from shadefit.render.comparison import compare, exr_channels
@@ -162,6 +163,8 @@ def _write_comparisons(scenes: "list[Scene]", settings: "Settings", out: Path, j
         large = render_large(scenes[-1], settings, EXACT, partial(stage.show, text))
         stage.end()
     sheet, exr = out / "render.png", out / "render.exr"
+    # Nothing is compiled from here on.
+    give_back(kept_below=0)
     # Each takes much memory, and gives it back.
     write_whole_bytes(exr, write_exr(exr_channels(comparisons)))
     write_whole_bytes(sheet, draw_comparisons(comparisons, large))

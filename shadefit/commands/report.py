@@ -40,6 +40,7 @@ def report(
     from coefficients.files import require_writable_file, write_whole
     from shadefit.figures import drawable, render
     from shadefit.figures import pictures as every_picture
+    from shadefit.memory import give_back
     from shadefit.progress import stages
     from shadefit.report.page import page
     from shadefit.terminal import messages_beside, print_lines
@@ -56,6 +57,7 @@ def report(
         for name, picture in missing.items():
             stage.show(name)
             taken[name] = render(picture.draw, ["png"])["png"]
+            give_back()
             stage.advance()
         stage.show("tables")
         drawn = {name: taken[name] for name in known if name in taken}

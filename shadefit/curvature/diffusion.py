@@ -42,7 +42,7 @@ class Patch:
 
 
 def patch(surface: Surface, point: np.ndarray, nodes: int = NODES) -> Patch:
-    """Return the nodes of a surface that are graded towards a point on it.
+    """Return the nodes of a surface that are graded towards a point (3,) on it, in mm.
 
     `nodes` are those of one of the panels; the others grow in proportion.
     """
@@ -57,7 +57,10 @@ def patch(surface: Surface, point: np.ndarray, nodes: int = NODES) -> Patch:
 def diffused(
     seen: Patch, point: np.ndarray, light: np.ndarray, profile: GaussianProfile
 ) -> Float[np.ndarray, " c"]:
-    """Return the diffused light of each channel at a point, for a unit vector to the light."""
+    """Return the diffused light of each channel at a `point` (3,), in mm.
+
+    `light` (3,) is a unit vector to the light. A plane shows its cosine with the normal.
+    """
     distance2 = np.sum((seen.points - point) ** 2, axis=1)
     variances = np.array(profile.variances)[:, None]
     falloff = np.exp(-distance2 / (2 * variances)) / (2 * np.pi * variances) * seen.areas

@@ -1,19 +1,22 @@
 """Mesh files: OBJ, PLY and glTF are read through trimesh, and PLY with curvature is written."""
 
 import io
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from coefficients.input_files import read_bounded
-from shadefit.curvature.meshes import UNITS, Mesh, mesh
+from shadefit.curvature.gltf_accessors import require_bounded_accessors
+from shadefit.curvature.meshes import LARGEST_COUNT, UNITS, Mesh, mesh
 from shadefit.curvature.tensors import Curvature
 from shadefit.curvature.vertex_bytes import to_bytes
 from shading.curvature.packing import RANGE
 
 SUFFIXES = (".obj", ".ply", ".gltf", ".glb")
 LARGEST_FILE = 2 * 1024**3
+_VERTEX_0 = re.compile(rb"^[ \t]*f(?:[ \t]+[^ \t\r\n]+)*?[ \t]+[+-]?0+(?=[/\s]|\Z)", re.MULTILINE)
 
 
 def read_mesh(path: Path, unit: str) -> Mesh:
@@ -27,7 +30,13 @@ def read_mesh(path: Path, unit: str) -> Mesh:
         raise ValueError(f"unit {unit!r} is not known: allowed are {', '.join(UNITS)}")
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: allowed are files that end with {', '.join(SUFFIXES)}")
-    data = io.BytesIO(read_bounded(path, LARGEST_FILE))
+    content = read_bounded(path, LARGEST_FILE)
+    # trimesh takes vertex 0 for the last one.
+    if path.suffix.lower() == ".obj" and _VERTEX_0.search(content):
+        raise ValueError(f"{path}: a face has vertex 0: allowed are numbers from 1, or below 0")
+    if path.suffix.lower() in (".gltf", ".glb"):
+        require_bounded_accessors(content, path)
+    data = io.BytesIO(content)
     try:
         import trimesh  # noqa: PLC0415
     except ImportError:
@@ -35,14 +44,16 @@ def read_mesh(path: Path, unit: str) -> Mesh:
             "meshes are read by trimesh, which is not installed: pip install 'shadefit[meshes]'"
         ) from None
     try:
-        scene = trimesh.load_scene(
-            data,
-            file_type=path.suffix.lower()[1:],
-            resolver=_beside(path.parent),
-            process=False,
-            skip_materials=True,
-        )
-        parts = list(_parts(scene))
+        # Vertices that are not finite are refused below.
+        with np.errstate(all="ignore"):
+            scene = trimesh.load_scene(
+                data,
+                file_type=path.suffix.lower()[1:],
+                resolver=_beside(path.parent),
+                process=False,
+                skip_materials=True,
+            )
+            parts = list(_parts(scene))
     # A damaged file makes trimesh raise errors of any type.
     except Exception as error:
         text = " ".join(str(error).split()) or type(error).__name__
@@ -102,11 +113,16 @@ def ply_bytes(
 
 def _parts(scene: Any):
     """Yield vertices, triangles and normals of the parts of a scene; no normals are zeros."""
+    total = 0
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         part = scene.geometry[name]
         if not len(getattr(part, "faces", ())):
             continue
+        # A part may be placed many times.
+        total += max(len(part.vertices), len(part.faces))
+        if total > LARGEST_COUNT:
+            raise ValueError(f"its parts have more than {LARGEST_COUNT} vertices or triangles")
         places = np.asarray(part.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]
         normals = np.zeros_like(places)
         # Normals of the file are in the cache; trimesh would compute others if asked for them.

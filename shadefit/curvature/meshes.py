@@ -32,11 +32,11 @@ def mesh(
     *,
     unit: str,
 ) -> Mesh:
-    """Return a mesh in mm of arrays in a unit, one of `UNITS`.
+    """Return a mesh in mm of vertices (n, 3), in a unit of `UNITS`, and triangles (m, 3).
 
-    Normals are normalised. Those that are missing, zero or not finite are computed by
-    `vertex_normals`. Raises ValueError for vertices that are not finite, for numbers of vertices
-    that do not exist, and for no triangle or too many.
+    Triangles are numbers of vertices. `normals` (n, 3) are normalised. Those that are missing, zero
+    or not finite are computed by `vertex_normals`. Raises ValueError for vertices that are not
+    finite, for numbers of vertices that do not exist, and for no triangle or too many.
     """
     if unit not in UNITS:
         raise ValueError(f"unit {unit!r} is not known: allowed are {', '.join(UNITS)}")

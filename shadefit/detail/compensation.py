@@ -1,7 +1,7 @@
 """Sources that give a target with a detail, and how near the composed image comes to the target."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from shadefit.images.bc1 import (
 from shadefit.images.image import Image, bands, image_of, require_channels
 
 ENCODERS = ("closed-loop", "quicktex")
+_ALL = slice(None)
 
 
 @dataclass(frozen=True)
@@ -33,15 +34,28 @@ class ComposedErrors:
 
 
 def errors_between(composed: np.ndarray, target: np.ndarray) -> ComposedErrors:
-    """Return the errors of composed pixels in [0, 1], which are first rounded to 8 bits."""
-    difference = np.floor(np.clip(composed, 0, 1) * 255.0 + 0.5) - 255.0 * target
-    rmse = float(np.sqrt(np.mean(difference**2)))
+    """Return the errors of composed pixels, which are first rounded to 8 bits.
+
+    `composed` and `target` are arrays of one shape, with values in [0, 1].
+    """
+    return _errors((composed[rows], target[rows]) for rows in bands(len(composed)))
+
+
+def _errors(parts: Iterable[tuple[np.ndarray, np.ndarray]]) -> ComposedErrors:
+    """Return the errors of an image that comes in parts, composed pixels with those of a target."""
+    squares, count, largest = 0.0, 0, 0.0
+    for composed, target in parts:
+        difference = np.floor(np.clip(composed, 0, 1) * 255.0 + 0.5) - 255.0 * target
+        squares += float(np.sum(difference**2))
+        count += difference.size
+        largest = max(largest, float(np.abs(difference).max()))
+    rmse = float(np.sqrt(squares / count))
     psnr = None if rmse == 0 else float(20 * np.log10(255 / rmse))
-    return ComposedErrors(rmse, psnr, float(np.abs(difference).max()))
+    return ComposedErrors(rmse, psnr, largest)
 
 
 def tiled(detail: Image, like: Image) -> np.ndarray:
-    """Return a detail's pixels in float64, repeated to the size of another image.
+    """Return a detail's pixels (height, width, channels), repeated to the size of another image.
 
     An alpha channel is left out. Raises ValueError if the size is no multiple of the detail's, or
     the numbers of channels differ.
@@ -68,10 +82,15 @@ def _tile(detail: Image, like: Image) -> np.ndarray:
     return colours
 
 
-def _colours(image: Image) -> np.ndarray:
+def _tiled_rows(tile: np.ndarray, like: Image, rows: slice) -> np.ndarray:
+    """Return some rows of a tile that is repeated to the size of an image."""
+    below = np.take(tile, range(rows.start, rows.stop), axis=0, mode="wrap")
+    return np.tile(below, (1, like.pixels.shape[1] // tile.shape[1], 1))
+
+
+def _colours(image: Image, rows: slice = _ALL) -> np.ndarray:
     require_channels(image, 1, 3, 4)
-    pixels = image.pixels.astype(float)
-    return pixels[..., :3] if pixels.shape[2] == 4 else pixels
+    return image.pixels[rows, :, :3].astype(float)
 
 
 def composed_image(source: Image, detail: Image, operator: Operator) -> Image:
@@ -79,10 +98,8 @@ def composed_image(source: Image, detail: Image, operator: Operator) -> Image:
     onto = _tile(detail, source)
     pixels = np.empty((*source.pixels.shape[:2], onto.shape[2]), np.float32)
     for rows in bands(len(pixels)):
-        part = _within(replace(source, pixels=source.pixels[rows]))
-        below = np.take(onto, range(rows.start, rows.stop), axis=0, mode="wrap")
-        beside = np.tile(below, (1, part.shape[1] // onto.shape[1], 1))
-        pixels[rows] = np.clip(operator.blend(part, beside), 0, 1)
+        blended = operator.blend(_within(source, rows), _tiled_rows(onto, source, rows))
+        pixels[rows] = np.clip(blended, 0, 1)
     return image_of(pixels, source.colour_space, "the composed image")
 
 
@@ -93,11 +110,18 @@ def compensated_image(
 
     The errors are those of the rounded source.
     """
-    wanted, onto = _within(target), tiled(detail, target)
-    largest = 2**bits - 1
-    codes = np.floor(operator.source(wanted, onto) * largest + 0.5)
-    source = image_of(codes / largest, target.colour_space, "the source")
-    return source, errors_between(operator.blend(codes / largest, onto), wanted)
+    onto, largest = _tile(detail, target), 2**bits - 1
+    pixels = np.empty((*target.pixels.shape[:2], onto.shape[2]), np.float32)
+
+    def parts() -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        for rows in bands(len(pixels)):
+            wanted, under = _within(target, rows), _tiled_rows(onto, target, rows)
+            stored = np.floor(operator.source(wanted, under) * largest + 0.5) / largest
+            pixels[rows] = stored
+            yield operator.blend(stored, under), wanted
+
+    errors = _errors(parts())
+    return image_of(pixels, target.colour_space, "the source"), errors
 
 
 def compensated_dds(
@@ -128,9 +152,9 @@ def compensated_dds(
     return bc1_dds(blocks, height, width), errors
 
 
-def _within(image: Image) -> np.ndarray:
+def _within(image: Image, rows: slice = _ALL) -> np.ndarray:
     """Return the colours of an image in float64. Raises ValueError for values outside [0, 1]."""
-    colours = _colours(image)
+    colours = _colours(image, rows)
     if colours.min() < 0 or colours.max() > 1:
         raise ValueError(f"{image.name}: values outside [0, 1] cannot be blended")
     return colours

@@ -98,7 +98,10 @@ def draw_azimuth() -> Figure:
 
 
 def domains(theta_o: float, theta: np.ndarray, phi: np.ndarray) -> np.ndarray:
-    """Return 0 to 3 where a normal is in I₁, I₂¹, I₂², or hidden. `phi` is relative to o."""
+    """Return 0 to 3 (…) where a normal is in I₁, I₂¹, I₂², or hidden.
+
+    `theta` and `phi` (…) are its angles in radians, φ relative to o.
+    """
     seen = np.sin(theta_o) * np.sin(theta) * np.cos(phi) + np.cos(theta_o) * np.cos(theta) > 0
     return np.where(
         np.cos(phi) >= 0, 0, np.where(theta <= np.pi / 2 - theta_o, 1, np.where(seen, 2, 3))

@@ -27,7 +27,7 @@ def axis_hints(owner: Problem) -> list[tuple[Axis, AxisHint]]:
 
 
 def points_along(hint: AxisHint, count: int, *, logarithmic: bool = False) -> np.ndarray:
-    """Return `count` values along the range of an axis that pictures show, even or logarithmic."""
+    """Return values (count,) along the range of an axis that pictures show, even or logarithmic."""
     space = np.geomspace if logarithmic else np.linspace
     return space(hint.lower, hint.upper, count)
 

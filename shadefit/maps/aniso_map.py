@@ -43,7 +43,7 @@ class EncodedLevel:
 
 
 def mip_entries(entries: Entries) -> list[np.ndarray]:
-    """Return the matrices of all mip levels, the first of which is the map itself.
+    """Return the matrices (h, w, …) of all mip levels, the first of which is the map itself.
 
     Raises ValueError for sides that are not powers of two.
     """

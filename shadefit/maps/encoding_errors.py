@@ -146,7 +146,10 @@ def mixed_error(encoding: str, first: np.ndarray, second: np.ndarray, bits: int 
 
 
 def mixture_distance(first: np.ndarray, second: np.ndarray, single: np.ndarray) -> float:
-    """Return the total variation between the mean of two lobes and a single one, by quadrature."""
+    """Return the total variation between the mean of two lobes and a single one, by quadrature.
+
+    Each lobe is (Sxx, Sxy, Syy).
+    """
     size = 512
     angle = (np.arange(size) + 0.5) * 2 * np.pi / size
     share = (np.arange(size) + 0.5) / size

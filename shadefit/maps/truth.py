@@ -82,8 +82,8 @@ def total_variation(grid: SlopeGrid, normal: np.ndarray, roughness: np.ndarray) 
 def best_lobe_by_descent(grid: SlopeGrid, mean, spread) -> tuple[np.ndarray, np.ndarray]:
     """Return the normal and the roughness of the lobe of least divergence, by BFGS on the grid.
 
-    It does not use the fixed point of `shadefit.maps.best_lobe`, and judges it. `mean` and `spread`
-    are the slopes of the lobe where the descent begins.
+    It does not use the fixed point of `shadefit.maps.best_lobe`, and judges it. `mean` (2,) and
+    `spread` (xx, xy, yy) are those of the slopes of the lobe where the descent begins.
     """
 
     def lobe(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,6 +2,7 @@
 
 from functools import lru_cache
 from pathlib import Path
+from threading import Lock
 
 import numpy as np
 
@@ -13,6 +14,7 @@ EVEN, CRUSHED = "even", "crushed"
 _WAVES, _SHORTEST, _LONGEST, _TURN = 24, 0.3, 1.1, 1.3
 # The largest width and height of a map in pixels
 _MAX_EDGE = 4096
+_READING = Lock()
 
 
 def azimuths(fibers: str, hits: Hits) -> np.ndarray:
@@ -53,7 +55,9 @@ def _map_of(path: Path) -> np.ndarray:
     except OSError:
         # Reading says what is wrong.
         state = ()
-    return _read_map(path, state)
+    # Two images are drawn at a time: the second one waits for the map that the first one reads.
+    with _READING:
+        return _read_map(path, state)
 
 
 @lru_cache(maxsize=1)

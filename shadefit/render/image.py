@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from shadefit.memory import trim
 from shadefit.render.fibers import azimuths
 from shadefit.render.functions import Functions
 from shadefit.render.scenes import Hits, Scene
@@ -48,6 +49,9 @@ def render_images(
 
             for image, band in zip(images, workers.map(pixels, wanted), strict=True):
                 image[top:bottom] = band
+            if number == 0:
+                # Everything is compiled now, which took memory.
+                trim()
     return images
 
 
@@ -71,6 +75,8 @@ def render_large(
         progress(number, len(bands))
         hits = scene.hits(size * samples, (top * samples, bottom * samples))
         images.append(_pixels(scene, settings, functions, hits, size, samples))
+        if number == 0:
+            trim()
     return np.concatenate(images)
 
 

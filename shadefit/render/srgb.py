@@ -6,7 +6,7 @@ import numpy as np
 
 
 def to_srgb(linear: np.ndarray) -> np.ndarray:
-    """Return sRGB values in [0, 1] for linear colours.
+    """Return sRGB values (…) in [0, 1] for linear colours (…) ≥ 0.
 
     Values up to 0.8 are converted as the standard says; brighter ones approach 1 smoothly.
     """
@@ -18,7 +18,7 @@ def to_srgb(linear: np.ndarray) -> np.ndarray:
 
 
 def from_srgb(encoded: np.ndarray) -> np.ndarray:
-    """Return linear colours for sRGB values in [0, 1]."""
+    """Return linear colours (…) in [0, 1] for sRGB values (…) in [0, 1], as the standard says."""
     low, high = encoded / 12.92, ((np.maximum(encoded, 0.04045) + 0.055) / 1.055) ** 2.4
     return np.where(encoded <= 0.04045, low, high)
 

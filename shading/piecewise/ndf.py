@@ -60,7 +60,10 @@ def profile(
 
 
 def uniform_knots(segments: int) -> np.ndarray:
-    """Return the `segments` + 1 equidistant angles from 0 to π/2. Raises ValueError below 1."""
+    """Return `segments` + 1 equidistant angles from 0 to π/2, in radians.
+
+    Raises ValueError for less than one segment.
+    """
     if segments < 1:
         raise ValueError(f"segments = {segments}: allowed are 1 and more")
     return np.linspace(0, np.pi / 2, segments + 1)

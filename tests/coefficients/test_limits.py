@@ -7,6 +7,7 @@ import math
 import pytest
 
 from coefficients.json_text import read_object
+from coefficients.ndf_table import read_ndf, serialise_ndf
 from coefficients.packaged import FOLDER
 from coefficients.table import parse, read, serialise
 from coefficients.table_text import read_text, validated
@@ -60,8 +61,8 @@ def row(length: int):
     return several(coefficients=[0.5] * length, coefficient_names=["c"] * length)
 
 
-def arguments(count: int):
-    names = [f"x{k}" for k in range(count)]
+def arguments(count: int, different: int | None = None):
+    names = [f"x{k % (different or count)}" for k in range(count)]
     place = dict.fromkeys(names, 0.5)
     one = {"rms": 0.1, "max": 0.2, "where": place, "points": 1}
     return several(
@@ -97,6 +98,7 @@ LIMITS = {
     "no coefficients": (row(0), rows(1, 0)),
     "fewest arguments": (arguments(1), arguments(0)),
     "arguments": (arguments(8), arguments(9)),
+    "arguments of different names": (arguments(2), arguments(2, different=1)),
     "steps": number("expression.steps", STEPS * 4096, STEPS * 4097),
     "operands": number(
         "expression.steps.0", ["select", "a", "b", 1.0], ["select", 1.0, 2.0, 3.0, 4.0]
@@ -240,11 +242,11 @@ def test_a_key_that_is_there_twice_is_named():
 @pytest.mark.parametrize("length", [200, 201, 5000])
 def test_a_long_message_is_cut_after_two_hundred_characters(length):
     def fail(_):
-        raise ValueError("x\n" * (length // 2) + "y" * (length % 2))
+        raise ValueError(("y" + "x\n" * length)[:length])
 
     with pytest.raises(ValueError) as caught:
         validated(fail, "{}", "a file")
-    shown = "x " * 99 + ("x…" if length > 200 else "x")
+    shown = "yx" + " x" * 99 + ("…" if length > 200 else "")
     assert str(caught.value) == f"a file is no JSON table: {shown}"
 
 
@@ -255,3 +257,57 @@ def test_a_message_names_the_place_without_the_types_that_were_tried():
         parse(changed(put("coefficients", [0.5, "x"])), "a file")
     with pytest.raises(ValueError, match=r"^a file: the table: grid.nodes: expected are nodes"):
         parse(changed(put("grid", "nodes", 0, "argument", "x")), "a file")
+
+
+def ndf(count: int = 2, **parts) -> dict:
+    quarter = math.pi / 2
+    knots = [*(quarter * k / (count - 1) for k in range(count - 1)), quarter]
+    errors = {"total_variation": 0.0, "masking": 0.0, "directions": 1}
+    table = {"schema": "shadefit.ndf/1", "target": "a", "linear_in": "angle", "monotone": True}
+    table |= {"knots": knots, "values": [0.0] * (count - 1) + [1.0], "mass": TINY}
+    return table | {"errors": errors, "command": "c"} | parts
+
+
+NDF = {
+    # What is accepted, and what is not
+    "knots": (ndf(1024), ndf(1025)),
+    "fewest knots": (ndf(2), ndf(1)),
+    "a last knot": (
+        ndf(knots=[0.0, math.pi / 2 + 0.9e-12]),
+        ndf(knots=[0.0, math.pi / 2 - 1.1e-12]),
+    ),
+    "a first knot": (ndf(knots=[-0.0, math.pi / 2]), ndf(knots=[TINY, math.pi / 2])),
+    "increasing knots": (
+        ndf(3, knots=[0.0, TINY, math.pi / 2]),
+        ndf(3, knots=[0.0, 0.0, math.pi / 2]),
+    ),
+    "values": (ndf(values=[TINY, 0.0]), ndf(values=[-TINY, 1.0])),
+    "values above zero": (ndf(values=[TINY, TINY]), ndf(values=[0.0, 0.0])),
+    "as many values": (ndf(3), ndf(3, values=[1.0, 1.0])),
+    "mass": (ndf(), ndf(mass=0.0)),
+    "masking": (ndf(), ndf(errors={"total_variation": 0.0, "masking": -TINY, "directions": 1})),
+    "variation": (ndf(), ndf(errors={"total_variation": -TINY, "masking": 0.0, "directions": 1})),
+    "directions": (ndf(), ndf(errors={"total_variation": 0.0, "masking": 0.0, "directions": 0})),
+}
+
+
+@pytest.mark.parametrize("name", NDF)
+def test_a_limit_of_a_distribution_of_normals_is_accepted_and_no_more(name, tmp_path):
+    accepted, refused = NDF[name]
+    path = tmp_path / "ndf.json"
+    path.write_text(json.dumps(accepted))
+    table = read_ndf(path)
+    path.write_text(serialise_ndf(table))
+    assert read_ndf(path) == table
+    path.write_text(json.dumps(refused))
+    with pytest.raises(ValueError, match=r"ndf\.json: "):
+        read_ndf(path)
+
+
+def test_a_file_of_a_distribution_may_have_a_mebibyte(tmp_path):
+    path = tmp_path / "ndf.json"
+    path.write_text(json.dumps(ndf()).ljust(1 << 20))
+    read_ndf(path)
+    path.write_text(json.dumps(ndf()).ljust((1 << 20) + 1))
+    with pytest.raises(ValueError, match="has 1048577 bytes: allowed are 1048576"):
+        read_ndf(path)

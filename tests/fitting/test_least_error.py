@@ -7,7 +7,7 @@ import pytest
 
 from fitting import Goal
 from fitting.fit import fit
-from fitting.proofs.least_error import LEVELS, least_error
+from fitting.proofs.least_error import LEVELS, _raised, least_error
 from fitting.solvers.minimax import Minimax
 from fitting.solvers.residuals import residuals
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
@@ -67,6 +67,19 @@ def test_where_no_bound_is_sought_there_is_none():
         (toy_form(lambda c, x, y: c[0] * c[1] * x, ["a", "b"]), np.ones(2)),
     ):
         assert least_error(form.fitted(coefficients), points, np.ones(2)) is None
+
+
+def test_a_refuted_level_is_raised_to_within_a_sixteenth_of_the_next_one():
+    tried = []
+
+    def is_refuted(level):
+        tried.append(level)
+        return level < 0.937
+
+    assert 0.937 - 0.05 / 16 <= _raised(0.9, 0.95, is_refuted) < 0.937
+    assert all(0.9 < level < 0.95 for level in tried)
+    tried.clear()
+    assert _raised(0.9, 0.9, is_refuted) == 0.9 and not tried
 
 
 def test_bounds_are_sought_from_the_tightest():

@@ -88,3 +88,18 @@ def test_without_a_margin_there_is_nothing_to_show():
     found = certify_range(with_margins(lambda c, x, y: ()))
     assert found is not None
     assert (found.lower, found.upper, found.boxes) == (0, 1, 0)
+
+
+@pytest.mark.parametrize("codomain", [(-1.0, 1.0), (-np.inf, np.inf), (-0.21, np.inf)])
+def test_a_codomain_may_have_any_ends(codomain):
+    form = toy_form(lambda c, x, y: x * x * c[0] + 0.2 * y, ["a"])
+    reference = replace(form.reference, codomain=codomain)
+    found = certify_range(replace(form, reference=reference).fitted(np.array([0.5])))
+    assert found is not None
+    # The values are from −0.2 to 0.9. The bounds are within a thousandth of the width.
+    room = 1e-3 * (2 if codomain[1] == 1 else 1.1)
+    assert -0.2 - room <= found.lower <= -0.2
+    assert 0.9 <= found.upper <= 0.9 + room
+    assert found.lower >= codomain[0] - 1e-12
+    below = replace(form.reference, codomain=(-0.19, codomain[1]))
+    assert certify_range(replace(form, reference=below).fitted(np.array([0.5]))) is None

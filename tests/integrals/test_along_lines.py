@@ -8,9 +8,11 @@ from integrals import Axis, Estimate, R, Reference, Sampling
 from integrals import along_lines as module
 from integrals.along_lines import TOLERANCE, estimates_along_lines
 from integrals.many_points import estimates_at_many
+from integrals.reference import Smooth
 
 AXES = (Axis("a", 0.0, 1.0), Axis("b", 0.0, 2.0))
 STATED = 1e-12
+SMOOTH = Smooth("b")
 
 
 def reference(function) -> Reference:
@@ -23,7 +25,7 @@ def reference(function) -> Reference:
         sampling=Sampling(fitted=3, checked=3, judged=3),
         quadrature=lambda a, b: Estimate(function(a, b), jnp.full((), STATED)),
         batch=64,
-        smooth_along="b",
+        smooth_along=(SMOOTH,),
     )
 
 
@@ -45,13 +47,14 @@ class Counted:
 
 def along(function, points: np.ndarray) -> tuple[Estimate, int]:
     exact = Counted(function)
-    return estimates_along_lines(reference(function), points, exact), exact.count
+    return estimates_along_lines(reference(function), SMOOTH, points, exact), exact.count
 
 
 def test_a_smooth_line_takes_few_values_and_states_its_error():
     points = np.random.default_rng(1).permutation(grid(3, 400))
     found, count = along(lambda a, b: np.exp(a * b) / 8, points)
-    assert count == 3 * 33
+    # The check of 17 nodes, by 9 of them, is not good enough for the steepest line.
+    assert count == 3 * 17 + 16
     wrong = np.abs(found.value - np.exp(points[:, 0] * points[:, 1]) / 8)
     assert (wrong <= found.error).all()
     assert (found.error <= 3.2 * STATED + TOLERANCE).all()
@@ -65,28 +68,29 @@ def test_a_line_of_a_peak_takes_more_nodes_and_a_kink_every_point():
     points = grid(3, 400)
     found, count = along(shape, points)
     # The nodes of the first try are among those of the second.
-    assert count == 3 * 33 + 2 * 32 + 400
+    assert count == 3 * 17 + 3 * 16 + 2 * 32 + 64 + 400
     wrong = np.abs(found.value - shape(*points.T))
     assert (wrong <= found.error).all()
     assert (found.value[800:] == shape(*points[800:].T)).all()
 
 
-@pytest.mark.parametrize("count", [33, 65])
+@pytest.mark.parametrize("count", module._COUNTS)
 def test_errors_at_the_nodes_grow_by_the_lebesgue_constant_at_most(count):
     """Errors of the worst signs, which the stated error covers and hardly exceeds."""
-    nodes = module._nodes(reference(None), 1, count)
+    nodes = 2 * module._nodes(count)
     between = np.linspace(0, 2, 20_001)
     worst = np.abs(module._matrix(nodes, between)).sum(axis=1)
     assert worst.max() <= module._LEBESGUE[count] < 1.01 * worst.max()
     if count == 33:
         signs = np.sign(module._matrix(nodes, between[[worst.argmax()]]))[0]
         points = np.stack([np.zeros(400), between[worst.argmax() + np.arange(-200, 200)]], axis=1)
+        points[[0, -1], 1] = [0, 2]
 
         def exact(points):
             off = STATED * np.interp(points[:, 1], nodes, signs)
             return Estimate(np.cos(points[:, 1]) + off, np.full(len(points), STATED))
 
-        found = estimates_along_lines(reference(None), points, exact)
+        found = estimates_along_lines(reference(None), SMOOTH, points, exact)
         wrong = np.abs(found.value - np.cos(points[:, 1])).max()
         assert 3 * STATED < wrong <= found.error.min()
 
@@ -100,7 +104,7 @@ def test_the_stated_error_has_what_the_half_of_the_nodes_miss():
     points = grid(1, 200)
     found, count = along(peak, points)
     assert count == 33
-    nodes = module._nodes(reference(None), 1, 17)
+    nodes = 2 * module._nodes(17)
     by_half = module._matrix(nodes, points[:, 1]) @ peak(0, nodes)
     missed = np.abs(by_half - peak(0, points[:, 1])).max()
     # It is measured at the other nodes only, so that a little may be missed.
@@ -108,10 +112,22 @@ def test_the_stated_error_has_what_the_half_of_the_nodes_miss():
 
 
 def test_few_points_are_evaluated_one_by_one():
-    points = grid(2, 98)
+    points = grid(2, 33)
     found, count = along(lambda a, b: a + b, points)
     assert count == len(points)
     assert (found.error == STATED).all()
+
+
+def test_a_line_may_be_smooth_in_the_logarithm():
+    """A function that is not smooth at 0, which the points come near to."""
+    points = np.stack([np.full(400, 0.5), np.geomspace(1e-6, 2, 400)], axis=1)
+    exact = Counted(lambda a, b: np.sqrt(b) * a)
+    found = estimates_along_lines(reference(None), Smooth("b", True), points, exact)
+    assert exact.count == 33
+    assert (np.abs(found.value - 0.5 * np.sqrt(points[:, 1])) <= found.error).all()
+    exact = Counted(lambda a, b: np.sqrt(b) * a)
+    estimates_along_lines(reference(None), SMOOTH, points, exact)
+    assert exact.count == 129 + 400
 
 
 def test_outside_the_domain_there_is_no_value():
@@ -122,7 +138,7 @@ def test_outside_the_domain_there_is_no_value():
     assert not np.isnan(found.value[3:]).any()
 
 
-@pytest.mark.parametrize("alpha", [0.02, 0.08, 0.3])
+@pytest.mark.parametrize("alpha", [0.08, 0.3])
 def test_r_on_a_line_is_the_integral_within_the_errors(alpha):
     points = np.stack([np.full(300, alpha), np.linspace(0, np.pi / 2, 300)], axis=1)
     found = estimates_at_many(R, points)
@@ -130,5 +146,5 @@ def test_r_on_a_line_is_the_integral_within_the_errors(alpha):
     alone = R.estimates(some)
     allowed = np.asarray(found.error)[7::60] + np.asarray(alone.error)
     assert (np.abs(np.asarray(found.value)[7::60] - np.asarray(alone.value)) <= allowed).all()
-    every = np.asarray(R.estimates(points).error).max()
-    assert (np.asarray(found.error) <= (1 + 3.61) * every + TOLERANCE).all()
+    # By the rule for many points, whose stated error is below 2e-9 here.
+    assert (np.asarray(found.error) <= 3.61 * 2e-9 + TOLERANCE).all()

@@ -133,6 +133,7 @@ def test_what_is_exact_is_not_rounded():
     assert iv.square(operand([(0, 1)])).upper == 1
     assert iv.subtract(one, one) == iv.multiply(zero, some) == iv.multiply(some, zero) == (0, 0)
     small = operand([(0, 1e-200)])
+    assert iv.square(small).lower == 0 == iv.square(operand([(-1, 1)])).lower
     assert iv.multiply(small, small).lower == 0 == iv.multiply(iv.negate(small), small).upper
     assert iv.multiply(iv.negate(small), iv.negate(small)).lower == 0
 
@@ -212,6 +213,7 @@ def test_functions_are_bounded_by_their_range():
     assert (iv.tanh(far).lower[[0, 2]] == -1).all() and (iv.tanh(far).upper[1:3] == 1).all()
     assert (iv.cosh(far).lower[2:] == 1).all() and iv.cosh(far).upper[3] < 1 + 1e-15
     assert (iv.cosh(far).upper[:3] == np.inf).all()
+    assert 0 <= iv.sqrt(far).upper[0] <= 1e-300
     assert (iv.sqrt(far).lower == [0, iv.sqrt(far).lower[1], 0, 0]).all()
     # The part of an operand outside of the domain is left out.
     some = operand([(-4, 4), (-2, 0.25)])

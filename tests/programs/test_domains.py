@@ -65,6 +65,8 @@ UNDEFINED = {
     "power of a negative number": ([("pow", (0, 2.5))], (-SMALLEST, 1.0)),
     "inverse of zero by a power": ([("pow", (0, -0.5))], (0.0, 1.0)),
     "power of zero": ([("pow", (0, 1))], (0.0, 1.0), (-1.0, 1.0)),
+    # It is zero, but the logarithm of zero has no bounds.
+    "power of zero to a positive number": ([("pow", (0, 1))], (0.0, 1.0), (0.5, 1.0)),
     "power of a constant zero": ([("pow", (0.0, 0))], (1.0, 2.0)),
     "power of a negative constant": ([("pow", (-0.5, 0))], (1.0, 2.0)),
     "angle of the origin": ([("atan2", (1, 0))], (-1.0, 1.0), (-1.0, 1.0)),

@@ -11,7 +11,7 @@ import pytest
 
 from programs.bounding import compiled
 from programs.bounding.compiled import compiler_missing
-from programs.bounding.largest import bound_largest, bound_largest_slowly
+from programs.bounding.largest import Worker, bound_largest, bound_largest_slowly
 from programs.functions import Function, Parameter
 from programs.toolchains.process import ToolchainError
 from programs.tracing.tracer import trace
@@ -361,6 +361,20 @@ def test_a_ratio_that_is_not_above_one_is_refused():
 def test_a_search_gives_up_after_too_many_boxes():
     kernel = kernel_of(lambda x, y: jnp.sin(50 * x * y) * x, 2)
     assert bound_largest(kernel, np.array([[0.0, 1.0]] * 2), 1.000001, max_boxes=10).upper is None
+
+
+def test_a_search_stays_within_its_stack_and_goes_on_with_a_larger_one():
+    box = np.array(KNOWN["narrow"][1], float)
+    worker = Worker(known("narrow"), box, 1.001, None)
+    memory = np.full((64, 2, 2), np.nan)
+    worker.stack = memory[:9]
+    worker.push(box)
+    while worker.state.depth:
+        worker.run()
+        assert np.isnan(memory[9:]).all() and not worker.failed
+    whole = bound_largest(known("narrow"), box, 1.001, threads=1)
+    assert len(worker.stack) > 9
+    assert worker.state.reached == pytest.approx(whole.upper, rel=1e-3)
 
 
 def test_the_boxes_of_a_proof_cover_the_whole_box():

@@ -12,7 +12,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from programs.bounding.compiled import compile_kernel, compiler_missing
+from programs.bounding import compiled
+from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
 
 pytestmark = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
 
@@ -78,11 +79,11 @@ OTHERS = ("FLOOR(X)", "CEIL(X)", "ABS(X)", "SQRT(X)", "POW(X, 0.4)", "MAX(X, Y)"
 CODE = [*(f"SUB({code}, MUL(Y, X))" for code in FUNCTIONS), *FUNCTIONS, *OTHERS]
 CODE += [*PAIRS, *(f"SUB({code}, {other})" for code, (_, other) in PAIRS.items())]
 CODE += [f"SELECT({code}, 1.0, 0.0)" for code in CONDITIONS]
+CODE += ["SUB(MAX(X, Y), X)", "SUB(MIN(X, Y), X)", "SUB(FLOOR(X), X)"]
 PLACES = {code: k for k, code in enumerate(dict.fromkeys(CODE))}
 
 
-@functools.cache
-def kernel():
+def compile_all() -> Kernel:
     cases = "\n".join(
         f"static jet f{k}(boxes *K, const jet *x) {{ return JET({code}); }}"
         for code, k in (
@@ -96,10 +97,19 @@ def kernel():
     return compile_kernel([cases, table, entry], 2)
 
 
+@functools.cache
+def kernel() -> Kernel:
+    return compile_all()
+
+
 def bounds(code: str, x: tuple[float, float], y: tuple[float, float] = (0.0, 0.0)):
     """Bound code on a box, and at its centre."""
-    kernel().library.choose_place(PLACES[code])
-    return kernel().enclose(np.array([x, y]))
+    return bounds_of(kernel(), code, x, y)
+
+
+def bounds_of(compiled_kernel: Kernel, code: str, x: tuple, y: tuple = (0.0, 0.0)):
+    compiled_kernel.library.choose_place(PLACES[code])
+    return compiled_kernel.enclose(np.array([x, y]))
 
 
 @pytest.mark.parametrize("code", FUNCTIONS)
@@ -149,6 +159,9 @@ def test_operations_of_two_operands_have_tight_bounds(code):
             )
             values = [exact(*corner) for corner in corners]
             assert found[0] <= min(values) and max(values) <= found[1]
+            middle = exact(*map(mpmath.mpf, low * 0.5 + high * 0.5))
+            assert found[2] - 1e-15 <= middle <= found[3] + 1e-15
+            assert found[3] - found[2] <= 1e-13 or "SELECT" in code
             apart = bounds(f"SUB({code}, {other})", *zip(low, high, strict=True))
             assert apart[0] <= 0 <= apart[1]
             # An operation that returns an operand has the slopes of both where it is not decided.
@@ -166,12 +179,35 @@ def test_a_condition_is_decided_where_it_holds_everywhere_or_nowhere(code):
     for x, y in itertools.product(SIDES, SIDES):
         ends = {1.0, *x, *y, sum(x) / 2, sum(y) / 2}
         lines = ([at for at in ends if low <= at <= high] for low, high in (x, y))
-        tried = [holds(*pair) for pair in itertools.product(*lines)]
+        pairs = list(itertools.product(*lines))
+        tried = [holds(*pair) for pair in pairs]
         low, high, *_ = bounds(f"SELECT({code}, 1.0, 0.0)", x, y)
         assert low <= min(tried) and max(tried) <= high
         # Two conditions that depend on each other are decided one by one.
-        if "AND" not in code and "OR" not in code:
+        parts = [{a < b for a, b in pairs}, {a < 1 for a, _ in pairs}]
+        if code[:2] not in ("AN", "OR") or max(map(len, parts)) == 1:
             assert (low, high) == (min(tried), max(tried))
+
+
+KINKS = {
+    # The box has its middle on one side of the kink; the range
+    ("SUB(ABS(X), MUL(Y, X))", (-0.3, 1.0), (1.0, 1.0)): (0, 0.6),
+    ("SUB(ABS(X), MUL(Y, X))", (-1.0, 0.3), (-1.0, -1.0)): (0, 0.6),
+    ("SUB(MAX(X, Y), X)", (0.0, 1.0), (0.4, 0.4)): (0, 0.4),
+    ("SUB(MAX(X, Y), X)", (0.0, 1.0), (0.6, 0.6)): (0, 0.6),
+    ("SUB(MIN(X, Y), X)", (0.0, 1.0), (0.4, 0.4)): (-0.6, 0),
+    ("SUB(MIN(X, Y), X)", (0.0, 1.0), (0.6, 0.6)): (-0.4, 0),
+    ("SUB(FLOOR(X), X)", (0.1, 1.0), (0.0, 0.0)): (-1, 0),
+}
+
+
+@pytest.mark.parametrize("case", KINKS, ids=str)
+def test_a_slope_on_one_side_of_a_kink_does_not_count_on_the_other(case):
+    code, *sides = case
+    low, high, *_ = bounds(code, *sides)
+    least, most = KINKS[case]
+    assert low <= least and most <= high
+    assert high - low <= 2.7
 
 
 INF = np.inf
@@ -242,3 +278,11 @@ def test_bounds_at_the_ends_of_domains(case):
     room = 1e-13 * max(abs(least), abs(most), 0.1)
     assert least - room <= low <= least + 1e-15 * abs(least)
     assert most - 1e-15 * abs(most) <= high <= most + room
+
+
+@pytest.mark.slow
+def test_a_processor_without_wide_vectors_has_the_same_bounds(monkeypatch):
+    monkeypatch.setattr(compiled, "_FASTER", ())
+    narrow = compile_all()
+    for code, *sides in (*AT_ENDS, *KINKS):
+        assert bounds_of(narrow, code, *sides) == bounds(code, *sides)

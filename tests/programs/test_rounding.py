@@ -73,6 +73,50 @@ def test_bounds_hold_and_are_not_vacuous(name):
 
 
 @needs_compiler
+def test_rounding_may_change_an_outcome_where_the_exact_one_is_certain():
+    """The sum with y has an error of 3e-5, so that either case is taken that far from x = ½.
+
+    A search divides there: then x² is below ¼ on the boxes on one side, and the case is certain.
+    """
+
+    def steep(x, y):
+        return jnp.where((x * x + y) - y < 0.25, 0.0, (x - 0.5) * 8.0)
+
+    found = bound(steep, [(0.25, 0.75), (1000, 1001)])
+    largest = measured(steep, [(0.4999, 0.5001), (1000, 1001)])
+    assert largest > 2e-4
+    assert found.upper is None or largest <= found.upper <= 4 * largest
+
+
+@needs_compiler
+def test_values_near_the_largest_float32_are_not_bounded():
+    """Above 0.99 of it, rounding might give infinity. A part of a box that is above is enough."""
+    parts = rounding_parts(program_of(lambda x: -3.0 * x, 1), IEEE, "v[0] = x[0];", [False])
+    kernel = compile_kernel(parts, 1)
+    largest = float(np.finfo(np.float32).max)
+    for part, holds in ((0.985, True), (0.995, False), (1.005, False)):
+        for low, high in ((0.1, part), (-part, -0.1), (part, part), (-part, -part)):
+            found = kernel.enclose(np.array([[low, high]]) * largest / 3)
+            assert np.isfinite(found[:2]).all() == holds
+
+
+@needs_compiler
+def test_conditions_of_the_arguments_are_independent_of_those_of_the_program():
+    """The first input is |x − ½|, by a condition; the program has a condition of its own."""
+    program = program_of(lambda d, y: jnp.where(y < 0.5, d - 0.25, 0.25 - d) * (y - 0.5), 2)
+    choice = "SELECT(LT(x[0], 0.5), SUB(0.5, x[0]), SUB(x[0], 0.5))"
+    parts = rounding_parts(program, IEEE, f"v[0] = {choice}; v[1] = x[1];", [False] * 2)
+    kernel = compile_kernel(parts, 2)
+    # Each combination of outcomes is on a part of this box, and none is on all of it.
+    _, upper, *_ = kernel.enclose(np.array([[0.25, 0.75], [0.25, 0.75]]))
+    corners = [
+        kernel.enclose(np.array([[x] * 2, [y] * 2])) for x in (0.25, 0.75) for y in (0.3, 0.7)
+    ]
+    assert upper >= max(high for _, high, *_ in corners) > 0
+    assert all("decide(K, 63," in part for part in parts[2:4])
+
+
+@needs_compiler
 def test_cancellation_makes_a_bound_large():
     """The sum with 1000 loses ten bits; without it, the bound is that of a few roundings."""
 

@@ -1,6 +1,8 @@
 """`shadefit curvature`, mesh files and smoothing: what is written, and bad input in one line."""
 
 import json
+import re
+import struct
 
 import numpy as np
 import pytest
@@ -102,6 +104,25 @@ def test_bytes_keep_half_a_step():
         to_bytes(tensors, 0.0)
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("f 1 2 3", "f 0 1 2"), "a face has vertex 0: allowed are numbers from 1, or below 0"),
+        (("f 1 2 3", "f 1 2 0/1"), "a face has vertex 0"),
+        (("v 1 0 0", "v 1e400 0 0"), "vertex 1 is [inf, nan, nan]"),
+    ],
+)
+def test_an_obj_file_that_would_be_misread_is_refused_in_one_line(
+    tmp_path, capsys, recwarn, change, message
+):
+    path = tmp_path / "mesh.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1 2 3\n".replace(*change))
+    assert run(path, "--unit", "mm") == 2
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == 1
+    assert not recwarn.list
+
+
 def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
     (tmp_path / "secret.bin").write_bytes(bytes(36))
     inner = tmp_path / "inner"
@@ -119,6 +140,44 @@ def test_a_gltf_file_may_not_refer_to_other_folders(tmp_path, capsys):
     path.write_text(json.dumps(document))
     assert run(path, "--unit", "mm") == 2
     assert "allowed are files beside it" in capsys.readouterr().err
+
+
+def glb(document: dict, data: bytes) -> bytes:
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<2I", len(text), 0x4E4F534A) + text
+    chunks += struct.pack("<2I", len(data), 0x004E4942) + data
+    return b"glTF" + struct.pack("<2I", 2, 12 + len(chunks)) + chunks
+
+
+@pytest.mark.parametrize(
+    ("accessor", "parts", "said"),
+    [
+        ({"count": 10**9}, 1, "its parts have 1.2e+10 bytes, but its data only"),
+        ({"count": 10**9, "bufferView": 0}, 1, "its parts have 1.2e+10 bytes"),
+        ({"count": 100_000}, 200, "its parts have 2.4e+08 bytes"),
+        ({"count": 3, "bufferView": 0}, 1, ""),
+    ],
+)
+def test_a_glb_file_that_would_fill_the_memory_is_refused(tmp_path, accessor, parts, said):
+    data = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()
+    document = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"componentType": 5126, "type": "VEC3", **accessor}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}] * parts}],
+        "nodes": [{"mesh": 0}],
+        "scenes": [{"nodes": [0]}],
+    }
+    path = tmp_path / "mesh.glb"
+    path.write_bytes(glb(document, data))
+    if said:
+        with pytest.raises(ValueError, match=re.escape(said)) as error:
+            read_mesh(path, "mm")
+        assert "\n" not in str(error.value)
+    else:
+        assert len(read_mesh(path, "mm").triangles) == 1
 
 
 @pytest.mark.parametrize(

@@ -186,3 +186,22 @@ def test_commands_refuse_in_one_line(capsys, tmp_path):
         assert (code, printed, error.count("\n")) == (2, "", 1)
         assert words in error
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_large_image_is_the_same_as_its_parts():
+    """Rows are worked on in parts; the detail's height need not be that of a part."""
+    rng = np.random.default_rng(4)
+    base = rng.random((600, 8, 4), np.float32)
+    detail = image_of(rng.random((24, 4, 3), np.float32), "linear", "detail")
+    blend = operator("smooth-overlay")
+    whole = composed_image(image_of(base, "linear", "base"), detail, blend)
+    parts = [
+        composed_image(image_of(base[top : top + 24], "linear", "part"), detail, blend).pixels
+        for top in range(0, 600, 24)
+    ]
+    np.testing.assert_array_equal(whole.pixels, np.concatenate(parts))
+    source, errors = compensated_image(whole, detail, blend, 16)
+    again = composed_image(source, detail, blend)
+    np.testing.assert_allclose(
+        errors.rmse, errors_between(again.pixels, whole.pixels).rmse, rtol=1e-3
+    )

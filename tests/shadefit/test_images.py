@@ -52,6 +52,15 @@ def test_png_files_keep_every_bit(tmp_path, channels, bits):
         other.load()
 
 
+@pytest.mark.parametrize("bits", [8, 16])
+def test_tall_png_files_keep_every_bit(tmp_path, bits):
+    """Rows are worked on in parts."""
+    codes = np.random.default_rng(1).integers(0, 2**bits, (600, 3, 3))
+    pixels = (codes / np.float32(2**bits - 1)).astype(np.float32)
+    write_image(tmp_path / "a.png", image_of(pixels, "linear", "a"), bits)
+    np.testing.assert_array_equal(read_image(tmp_path / "a.png", "linear").pixels, pixels)
+
+
 def test_png_files_of_another_writer_are_read(tmp_path):
     codes, pixels = _random(3, 255)
     path = tmp_path / "a.png"

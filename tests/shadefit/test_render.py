@@ -5,7 +5,9 @@ import itertools
 import json
 import os
 import struct
+import time
 import zlib
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import jax
@@ -366,6 +368,21 @@ def test_a_map_is_read_once_until_it_changes(tmp_path, monkeypatch):
         assert len(read) == turn
         angle = np.arctan2(green / 127.5 - 1, red / 127.5 - 1)
         np.testing.assert_allclose(first, angle, atol=1e-6)
+
+
+def test_a_map_is_read_once_by_two_threads(tmp_path, monkeypatch):
+    path, hits, read = tmp_path / "map.png", SCENES["sphere"].hits(SIZE), []
+    Image.fromarray(np.full((4, 4, 3), 200, np.uint8)).save(path)
+
+    def slow(*arguments):
+        read.append(path)
+        time.sleep(0.05)
+        return real_read_image(*arguments)
+
+    monkeypatch.setattr(images, "read_image", slow)
+    with ThreadPoolExecutor(2) as workers:
+        list(workers.map(lambda _: azimuths(str(path), hits), range(2)))
+    assert len(read) == 1
 
 
 @pytest.mark.parametrize("size", [(4097, 1), (1, 4097), (15000, 15000), (2**31 - 1, 2**31 - 1)])

@@ -72,3 +72,18 @@ def test_a_misspelt_name_is_refused_without_waiting_for_jax(arguments, said):
     assert (status, out) == (2, "")
     assert said in error
     assert "\n" not in error
+
+
+def test_a_command_runs_where_no_further_thread_is_allowed():
+    code = """
+import sys, threading
+def refuse(thread):
+    raise RuntimeError("can't start new thread")
+threading.Thread.start = refuse
+from shadefit.__main__ import main
+sys.argv = ["shadefit", "--version"]
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("shadefit ")

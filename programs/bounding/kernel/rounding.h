@@ -70,8 +70,9 @@ INLINE V size_of(jet a) { return largest(iabs(a.v)); }
 #define MOST_OPEN 4
 
 /* The error of a program with conditions. `error` bounds it while the conditions have the outcome
-   that is assumed; `value` is the exact value for that outcome. If rounding changes an outcome, the
-   value changes by at most the largest difference of two of them. */
+   that is assumed; `value` is the exact value for that outcome. It is needed for each outcome that
+   rounding may give, also where the exact conditions have one only. If rounding changes an outcome,
+   the value changes by at most the largest difference of two of them. */
 static jet over_outcomes(
     boxes *K, const jet *x, jet (*error)(boxes *, const jet *), jet (*value)(boxes *, const jet *)) {
     jet e = error(K, x), at[1 << MOST_OPEN];

@@ -1,0 +1,94 @@
+"""The bound of rounding at a point: the sum of derivatives, which 40 digits give for each rule."""
+
+import functools
+import re
+
+import mpmath
+import numpy as np
+import pytest
+
+from programs.bounding.adjoints import _RULES
+from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
+from programs.bounding.rounding import rounding_parts
+from programs.bounding.rounding_model import IEEE, ULP
+from programs.operations import OPERATIONS
+from programs.program import Program, Step
+
+# The functions of all operations take four seconds to compile.
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler"),
+]
+
+EXACT = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "neg": lambda a: -a,
+    "abs": abs,
+    "rsqrt": lambda a: 1 / mpmath.sqrt(a),
+    "max": lambda a, b: a if a > b else b,
+    "min": lambda a, b: a if a < b else b,
+    "exp2": lambda a: mpmath.mpf(2) ** a,
+    "pow": lambda a, b: a**b,
+    # The condition, x < y, holds.
+    "select": lambda a, b: a,
+}
+# x and y: the operands are x·y and x + y, each of which is rounded.
+POINTS = ((0.25, 0.625), (0.375, 2.0), (-0.75, 0.5))
+DEFINED = {name: POINTS[:2] for name in ("sqrt", "rsqrt", "log", "pow")}
+DEFINED["atan2"] = ((-0.25, 0.625), (0.25, 0.625))
+
+
+def program_of(operation: str) -> Program:
+    arity = OPERATIONS[operation].arity
+    steps = [Step("mul", (0, 1)), Step("add", (0, 1)), Step("lt", (0, 1))]
+    operands = (4, 2, 3) if operation == "select" else (2, 3)[:arity]
+    steps.append(Step(operation, operands))
+    return Program(operation, ("x", "y"), tuple(steps), (5,))
+
+
+@functools.cache
+def kernel() -> Kernel:
+    """Compile the bounds of all operations; `choose_place` selects one."""
+    code, names = [], []
+    for k, operation in enumerate(_RULES):
+        first, *parts = rounding_parts(
+            program_of(operation), IEEE, "v[0] = x[0]; v[1] = x[1];", [False] * 2
+        )
+        code += [] if code else [first]
+        for part in parts:
+            code.append(re.sub(r"\b(error_of|value_of|error_at)\b", rf"\1_{k}", part))
+        names.append(f"error_at_{k}")
+    code.append(
+        f"static jet (*const all_of_them[])(boxes *, const jet *) = {{ {', '.join(names)} }};\n"
+        "static int place; void choose_place(int k) { place = k; }\n"
+        "static jet error_at(boxes *K, const jet *x) { return all_of_them[place](K, x); }"
+    )
+    return compile_kernel(code, 2)
+
+
+def expected(operation: str, x: float, y: float):
+    exact = EXACT.get(operation) or getattr(mpmath, operation)
+    operands = (mpmath.mpf(x) * y, mpmath.mpf(x) + y)
+    both = operation == "select" or OPERATIONS[operation].arity == 2
+    operands = operands if both else operands[:1]
+    total = IEEE.errors[operation].ulps * abs(exact(*operands))
+    for k, operand in enumerate(operands):
+        order = tuple(int(j == k) for j in range(len(operands)))
+        total += 0.5 * abs(operand * mpmath.diff(exact, operands, order, h=1e-9))
+    return total * ULP
+
+
+@pytest.mark.parametrize("operation", _RULES)
+def test_a_bound_is_the_sum_of_derivatives(operation):
+    kernel().library.choose_place(list(_RULES).index(operation))
+    with mpmath.workdps(40):
+        for point in DEFINED.get(operation, POINTS):
+            if operation in ("asin", "acos", "log1p") and point[0] < 0:
+                continue
+            bounds = kernel().enclose(np.array([[each] * 2 for each in point]))
+            exact = expected(operation, *point)
+            # Terms of the second order, and the product, which may be fused with a sum
+            assert exact <= bounds[1] <= exact * (1 + 1e-5) + 1e-30
