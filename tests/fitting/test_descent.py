@@ -149,3 +149,20 @@ def test_a_descent_that_met_a_pole_is_repeated_without_its_guard(monkeypatch):
     guarded, free = done
     assert np.isinf(guarded(np.array([-1.0]))).all()
     np.testing.assert_array_equal(free(np.array([-1.0])), -1)
+
+
+@pytest.mark.parametrize(
+    ("places", "worthwhile", "count"),
+    [
+        ([-1.0, 3.0, 2.0, 1.0], 1e-8, 1),
+        ([-1.0, 3.0, 2.0, 1.0], 1e-15, 2),
+        ([3.0, 2.0, -1.0, 1.0], 1e-8, 2),
+    ],
+    ids=["early", "early but not rough", "late"],
+)
+def test_a_rough_descent_that_met_a_pole_early_is_not_repeated(
+    monkeypatch, places, worthwhile, count
+):
+    done = followed(monkeypatch, places)
+    fit_squares(halfline(), [np.array([3.0])], worthwhile=worthwhile, near=0)
+    assert len(done) == count
