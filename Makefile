@@ -84,6 +84,7 @@ verify: toolchains  ## compile, run and compare the exported code of every table
 bench: setup  ## reproduce the claims of speed, as ratios measured in one run
 	$(BIN)/python benchmarks/refit_times.py --write docs
 	$(BIN)/python benchmarks/speed_ratios.py
+	$(BIN)/python benchmarks/search_times.py
 	$(BIN)/python benchmarks/samplers.py
 
 format: setup  ## format and mend what can be mended

@@ -19,6 +19,8 @@ _SEED = 20110917
 _FLOOR = 1e-2
 # An end without the penalty is kept only if nothing is below this part of the mean.
 _ROOM = 1e-3
+# A descent that ends at a larger `worthwhile` is only the start of another method.
+_ROUGH = 1e-12
 
 
 @dataclass(frozen=True)
@@ -76,14 +78,15 @@ def _descend(
 ) -> Descent | None:
     """Return the end of a descent from one start; None if it has a pole."""
     everywhere = np.arange(len(problem.exact))
-    refused = False
+    tried = last_refused = 0
 
     def guarded(z: np.ndarray) -> np.ndarray:
-        nonlocal refused
+        nonlocal tried, last_refused
+        tried += 1
         error = problem.values(z)
         if problem.positive(z).min() > 0:
             return error
-        refused = True
+        last_refused = tried
         return np.full_like(error, np.inf)
 
     def slopes(z: np.ndarray) -> np.ndarray:
@@ -95,8 +98,10 @@ def _descend(
     ends = []
     if problem.is_good(start):
         ends.append(from_start(guarded, slopes, start))
-        # If nothing was refused, a descent without the guard would be the same.
-        if ends[0].converged or not refused:
+        # If nothing was refused, a descent without the guard would be the same. If only points of
+        # its first half were, it would end in about the same place.
+        early = worthwhile > _ROUGH and last_refused < tried / 2 and _has_room(problem, ends[0].z)
+        if ends[0].converged or not last_refused or early:
             return ends[0]
     ends.append(from_start(problem.values, slopes, start))
     if not problem.is_good(ends[-1].z):

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from fitting.solvers.descent import descend
-from fitting.solvers.residuals import residuals
+from fitting.solvers import scattered_squares
+from fitting.solvers.descent import Descent, descend
+from fitting.solvers.residuals import Residuals, residuals
 from fitting.solvers.scattered_squares import fit_squares
 from tests.fitting.toys import toy_form
 
@@ -105,3 +106,63 @@ def test_the_better_of_two_ends_is_kept():
     both = fit_squares(problem, starts)
     assert both is not None and both.tried == 2
     np.testing.assert_array_equal(both.z, left.z)
+
+
+def followed(monkeypatch, places, converged=False):
+    """Let every descent go through these places, and return the list of their residuals."""
+    residuals_of = []
+
+    def descend(residual, _jacobian, start, *_):
+        residuals_of.append(residual)
+        found = [residual(np.array([z])) for z in places]
+        end = np.array([places[-1]])
+        return Descent(end, float(np.linalg.norm(found[-1])), converged)
+
+    monkeypatch.setattr(scattered_squares, "descend", descend)
+    return residuals_of
+
+
+def halfline() -> Residuals:
+    """A problem of one coefficient z, which must be positive."""
+    return Residuals(
+        values=lambda z: z * np.ones(3),
+        slopes=lambda z, rows: np.ones((len(rows), 1)),
+        positive=lambda z: z * np.ones(3),
+        positive_slopes=lambda z, rows: np.ones((len(rows), 1)),
+        least=np.full(3, -np.inf),
+        most=np.full(3, np.inf),
+        exact=np.zeros(3),
+        scale=np.ones(3),
+    )
+
+
+def test_a_descent_that_met_no_pole_is_not_repeated_without_its_guard(monkeypatch):
+    done = followed(monkeypatch, [2.0, 1.0])
+    found = fit_squares(halfline(), [np.array([3.0])], near=0)
+    assert found is not None and found.z == [1.0] and not found.converged
+    assert len(done) == 1
+
+
+def test_a_descent_that_met_a_pole_is_repeated_without_its_guard(monkeypatch):
+    done = followed(monkeypatch, [2.0, -1.0, 1.0])
+    fit_squares(halfline(), [np.array([3.0])], near=0)
+    guarded, free = done
+    assert np.isinf(guarded(np.array([-1.0]))).all()
+    np.testing.assert_array_equal(free(np.array([-1.0])), -1)
+
+
+@pytest.mark.parametrize(
+    ("places", "worthwhile", "count"),
+    [
+        ([-1.0, 3.0, 2.0, 1.0], 1e-8, 1),
+        ([-1.0, 3.0, 2.0, 1.0], 1e-15, 2),
+        ([3.0, 2.0, -1.0, 1.0], 1e-8, 2),
+    ],
+    ids=["early", "early but not rough", "late"],
+)
+def test_a_rough_descent_that_met_a_pole_early_is_not_repeated(
+    monkeypatch, places, worthwhile, count
+):
+    done = followed(monkeypatch, places)
+    fit_squares(halfline(), [np.array([3.0])], worthwhile=worthwhile, near=0)
+    assert len(done) == count
