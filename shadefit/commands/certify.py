@@ -41,7 +41,7 @@ def certify(
             "--rounding", help="Prove what rounding to float32 adds to the error of exported code."
         ),
     ] = False,
-    threads: Annotated[int, typer.Option(min=1, help="Threads of the search.")] = 2,
+    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads of the search.")] = 2,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder to write the tables to, with their proven largest errors."),

@@ -68,6 +68,7 @@ def test_a_claim_that_is_wrong_is_refuted(capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (("best/q-4", "--threads", "257"), "less than or equal to 256"),
         (("best/q-4", "--upper-ratio", "1"), "upper ratio 1: allowed is a finite number above 1"),
         (
             ("best/q-4", "--upper-ratio", "inf"),
