@@ -12,7 +12,6 @@ import numpy as np
 from jax import Array, Device
 
 from integrals.batches import in_batches
-from integrals.compilation import jit_for_few_calls
 from integrals.data import Data
 from integrals.devices import all_devices, spread
 from integrals.sampling import Sampling
@@ -223,7 +222,9 @@ class Reference:
         return np.asarray(self.estimates(points).value)
 
 
-@jit_for_few_calls(static=(0, 1, 2))
+# Compiled with all optimisations: fits and searches call it often, and with fewer of them the last
+# digits of P_s would differ, which leads fits of the largest error elsewhere.
+@functools.partial(jax.jit, static_argnums=(0, 1, 2))
 def _estimates(
     reference: Reference,
     options: tuple[tuple[str, Any], ...],
