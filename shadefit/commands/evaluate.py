@@ -217,9 +217,9 @@ def _compiled(
     reference: "Reference", leg: str, options: tuple[tuple[str, Any], ...]
 ) -> "Callable[..., Estimate]":
     """Compile a leg as a whole. JAX would need several times as long one operation at a time."""
-    import jax
+    from integrals.compilation import jit_for_few_calls
 
-    return jax.jit(functools.partial(reference.legs[leg], **dict(options)))
+    return jit_for_few_calls(functools.partial(reference.legs[leg], **dict(options)))
 
 
 def _tables(owner: "Problem", extra: list[str]) -> "dict[str, Entry]":
@@ -251,7 +251,7 @@ def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float | N
     ]
     if outside:
         return {"value": None, "difference": None, "reason": "; ".join(outside)}
-    value = float(fitted(*arguments.values()))
+    value = _value_at(fitted, list(arguments.values()))
     if not math.isfinite(value):
         what = "no number" if math.isnan(value) else "infinite"
         return {"value": None, "difference": None, "reason": f"its value is {what} there"}
@@ -260,6 +260,17 @@ def _by_form(fitted: "FittedForm", arguments: dict[str, float], exact: float | N
         "difference": None if exact is None else value - exact,
         "reason": None,
     }
+
+
+def _value_at(fitted: "FittedForm", point: list[float]) -> float:
+    """Return a form's value at one point by NumPy: JAX would compile each of its operations."""
+    import numpy as np
+
+    from fitting.linearity import program_of
+    from programs import evaluate as evaluate_program
+
+    row = np.array([*np.ravel(fitted.coefficients), *point])
+    return float(evaluate_program(program_of(fitted.form), row[None])[0, 0])
 
 
 def _cells(entry: dict) -> list[str]:
