@@ -85,9 +85,10 @@ class Wider:
     """A form that has another one as the special case in which some coefficients are fixed.
 
     Fits evaluate it in place of the other one, so that one compiled program serves all its special
-    cases, and is made for speed (fitting/solvers/at_points.py). Its values must be the same to the
-    last digit, with their derivatives: a fixed coefficient is a zero or a one whose term or factor
-    changes nothing. The numbers that must stay positive must be the same too.
+    cases, and is made for speed (fitting/solvers/at_points.py). Its values must be the same, with
+    their derivatives: a fixed coefficient is a zero or a one whose term or factor changes nothing.
+    For a form that is fitted they are the same to the last digit. The numbers that must stay
+    positive must be the same too.
 
     * `form`: the wider form. `fixed`: its flat coefficients; those at `places` do not count.
     * `places`: where the flat coefficients of the other form are among them.
