@@ -43,8 +43,10 @@ def quadrature(alpha, theta_f, *, nodes: int = 96) -> Estimate:
         return fraction_at(alpha, theta_f, theta_u, phi)
 
     # P_s changes within an angle of α about the fibre. The second term bounds what a rule misses
-    # whose nodes are too far apart for this.
-    rounding = 4 * np.finfo(float).eps / alpha + 6 * alpha**2 * jnp.exp(-4 * nodes * alpha)
+    # whose nodes are too far apart for this; the factor 6 is too small if they are very far apart
+    # (the error is 14.3 α² e^(−4 nodes α) at α = 0.0445, θf = 1.3477 with 96 nodes).
+    factor = jnp.where(nodes * alpha < 4.8, 16.0, 6.0)
+    rounding = 4 * np.finfo(float).eps / alpha + factor * alpha**2 * jnp.exp(-4 * nodes * alpha)
     return checked_rule(lambda count: average_over_lights(fraction, count), nodes, rounding)
 
 
