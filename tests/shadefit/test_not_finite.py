@@ -8,6 +8,7 @@ import pytest
 
 from coefficients.compare import _ratio
 from integrals import PS
+from quantities import problem
 from shadefit.cli import main
 from shadefit.commands.evaluate import _by_form, _cells
 from shadefit.commands.options import checked
@@ -25,8 +26,10 @@ def run(capsys, *arguments):
 
 
 @pytest.mark.parametrize(("value", "word"), [(math.inf, "infinite"), (math.nan, "no number")])
-def test_a_value_that_is_not_finite_is_null_with_a_reason(value, word):
-    found = _by_form(type("Fitted", (), {"axes": (), "__call__": lambda *_: value})(), {}, 0.5)
+def test_a_value_that_is_not_finite_is_null_with_a_reason(monkeypatch, value, word):
+    monkeypatch.setattr("shadefit.commands.evaluate._value_at", lambda *_: value)
+    fitted = problem("q").default.fitted(np.zeros(2))
+    found = _by_form(fitted, {"density": 0.1}, 0.5)
     assert found == {"value": None, "difference": None, "reason": f"its value is {word} there"}
     assert _cells(found)[:2] == ["—", "—"]
 
