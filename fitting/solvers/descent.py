@@ -1,17 +1,16 @@
 """A descent to the least sum of squares from one start, with a verdict on convergence.
 
-A trust region method minimises the linearised residual within a region that is measured in the
-scale of the Jacobian's columns, because coefficients may differ in size by many orders.
+SciPy's trust region method minimises the linearised residual within a region that is measured in
+the scale of the Jacobian's columns, because coefficients may differ in size by many orders.
 Gauss–Newton steps at the end find the digits that the sum of squares, which is flat there, does not
 show.
 """
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-
-from fitting.solvers.trust_region import search
 
 Residual = Callable[[np.ndarray], np.ndarray]
 Jacobian = Callable[[np.ndarray], np.ndarray]
@@ -54,6 +53,8 @@ def descend(
     of residuals. The descent ends if a step lowers the sum of squares by less than the fraction
     `worthwhile`; the rounding of the sum hides gains below 1e-15.
     """
+    from scipy.optimize import least_squares  # noqa: PLC0415  slow to import
+
     best = Descent(np.asarray(start, float), np.inf, False)
 
     def tried(z: np.ndarray) -> np.ndarray:
@@ -66,10 +67,20 @@ def descend(
         return r if np.isfinite(norm) else np.full(len(r), np.inf)
 
     with np.errstate(all="ignore"):
-        first = tried(best.z)
-        if not np.isfinite(first).all():
+        if not np.isfinite(tried(best.z)).all():
             return best
-        search(tried, jacobian, best.z, first, steps, worthwhile, _LEAST_STEP)
+        # If the Jacobian is not finite somewhere, the best point before that is the end.
+        with contextlib.suppress(ValueError, np.linalg.LinAlgError):
+            least_squares(
+                tried,
+                best.z,
+                jacobian,
+                x_scale="jac",
+                ftol=worthwhile,
+                xtol=_LEAST_STEP,
+                gtol=None,
+                max_nfev=steps,
+            )
         return _polished(residual, jacobian, best.z, worthwhile)
 
 
