@@ -25,6 +25,7 @@ from integrals.fuzz.ps import LEAST_ALPHA
 from integrals.reference import Estimate
 from integrals.rules.interval import gauss_legendre
 from shading.fuzz.lit_cone import scattered_fraction
+from shading.sine_and_cosine import sine_and_cosine
 
 # Nodes of each of four sections in ψ, and in x; the rule that checks has ¾ as many of both. The
 # error is below 1e-11 for α ≥ 1e-3 (tests/integrals/test_lights_about_fibre.py).
@@ -104,7 +105,7 @@ def _lights(maps: tuple[Array, ...]) -> tuple[Array, Array]:
     z, weight = _light_rule()
     power = jnp.exp(spread * z)
     inverse = _ABOVE / power
-    sine = _sine(width / 4 * (power - inverse))
+    sine, _ = sine_and_cosine(width / 4 * (power - inverse))
     cos_un = jnp.maximum(lowest + rise * sine * sine, 0.0)
     return cos_un, total * (power + inverse) * weight
 
@@ -129,17 +130,6 @@ def _averages(lights: tuple[Array, ...]) -> tuple[Array, Array]:
     fraction = on_all(cos_un, cos_ut, sin_ut * sin_ut)
     on_rings = jnp.sum(fraction * cos_un * weights, axis=0)
     return jnp.sum(on_rings[:, :_RINGS]), jnp.sum(on_rings[:, _RINGS:])
-
-
-def _sine(x: Array) -> Array:
-    """Return sin x for x in [0, π/2] by Taylor's polynomial, with a relative error below 1e-15.
-
-    XLA calls the C library for each sine, which takes four times as long.
-    """
-    square, total = x * x, jnp.ones_like(x)
-    for n in range(20, 0, -2):
-        total = 1 - total * square * (1 / (n * (n + 1)))
-    return x * total
 
 
 @functools.cache
