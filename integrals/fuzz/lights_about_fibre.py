@@ -39,6 +39,8 @@ _ROUNDINGS = 16
 # Sections in ψ: rings above the horizon, from the fibre and from the horizon on, and rings that
 # cross the horizon, from their lowest and from their highest on.
 _ABOVE = np.array([1.0, 1.0, -1.0, -1.0])[:, None]
+# Sines of angles (lights, 4, rings)
+_sines = jax.vmap(jax.vmap(jax.vmap(lambda x: sine_and_cosine(x)[0])))
 
 
 def estimates_about_fibre(points: Array) -> Estimate:
@@ -105,7 +107,7 @@ def _lights(maps: tuple[Array, ...]) -> tuple[Array, Array]:
     z, weight = _light_rule()
     power = jnp.exp(spread * z)
     inverse = _ABOVE / power
-    sine, _ = sine_and_cosine(width / 4 * (power - inverse))
+    sine = _sines(width / 4 * (power - inverse))
     cos_un = jnp.maximum(lowest + rise * sine * sine, 0.0)
     return cos_un, total * (power + inverse) * weight
 

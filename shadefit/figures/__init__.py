@@ -7,8 +7,9 @@ The names below are imported when they are first used, so that a program that dr
 not wait for the import of all others.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from programs.public_names import import_when_used
 
 if TYPE_CHECKING:
     from shadefit.figures.gallery import pictures as pictures
@@ -17,16 +18,11 @@ if TYPE_CHECKING:
     from shadefit.figures.picture import require_libraries as require_libraries
     from shadefit.figures.style import render as render
 
-_HOMES = {
-    "shadefit.figures.gallery": ("pictures",),
-    "shadefit.figures.picture": ("Picture", "drawable", "require_libraries"),
-    "shadefit.figures.style": ("render",),
-}
-_MODULES = {name: module for module, names in _HOMES.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
+__getattr__, __dir__, __all__ = import_when_used(
+    __name__,
+    {
+        "shadefit.figures.gallery": ("pictures",),
+        "shadefit.figures.picture": ("Picture", "drawable", "require_libraries"),
+        "shadefit.figures.style": ("render",),
+    },
+)

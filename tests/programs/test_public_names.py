@@ -9,7 +9,7 @@ import pytest
 
 from programs.public_names import import_when_used
 
-LAZY = ("programs", "fitting", "shadefit")
+LAZY = ("programs", "fitting", "shadefit", "shadefit.figures")
 
 
 @pytest.mark.parametrize("package", LAZY)
