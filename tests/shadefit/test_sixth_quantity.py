@@ -9,7 +9,9 @@ import shadefit as sf
 from quantities.registry import unregister
 from shadefit.cli import main
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "soft_step.py"
+ROOT = Path(__file__).parents[2]
+EXAMPLE = ROOT / "examples" / "soft_step.py"
+PICTURES = ROOT / "docs" / "figures"
 FILE = ["-p", str(EXAMPLE)]
 
 
@@ -34,10 +36,10 @@ def run(capsys):
 
 @pytest.mark.slow
 def test_it_is_in_the_report(run, tmp_path):
-    """The report draws all pictures."""
+    """The pictures of the other quantities are those of docs/figures."""
     run("refit", "--out", tmp_path)
     table = tmp_path / "soft.json"
-    run("report", table, "--out", tmp_path / "report.html")
+    run("report", table, "--pictures", PICTURES, "--out", tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert "S = tanh(x y), a soft step" in page
     assert f'<th scope="row">{table}</th>' in page
