@@ -1,4 +1,4 @@
-"""A packaged table with other content, as a file."""
+"""Tables with other content."""
 
 import json
 from pathlib import Path
@@ -14,3 +14,15 @@ def changed_table(folder: Path, name: str = "q", **changes) -> str:
     path = folder / "changed.json"
     path.write_text(json.dumps({key: each for key, each in data.items() if each is not None}))
     return str(path)
+
+
+def put(*path_and_value):
+    """Return a function that puts a value at a path in the content of a table."""
+    *path, last, value = path_and_value
+
+    def change(data):
+        for key in path:
+            data = data[key]
+        data[last] = value
+
+    return change

@@ -11,6 +11,7 @@ from coefficients.ndf_table import read_ndf, serialise_ndf
 from coefficients.packaged import FOLDER
 from coefficients.table import parse, read, serialise
 from coefficients.table_text import read_text, validated
+from tests.coefficients.changed import put
 
 BASE = json.loads((FOLDER / "fuzz" / "refit" / "r.json").read_text(encoding="utf-8"))
 PUBLISHED = json.loads((FOLDER / "fuzz" / "published" / "ps.json").read_text(encoding="utf-8"))
@@ -72,17 +73,6 @@ def arguments(count: int, different: int | None = None):
         certificates={"boxes": 0},
         grid={"nodes": []},
     )
-
-
-def put(*path_and_value):
-    *path, last, value = path_and_value
-
-    def change(data):
-        for key in path:
-            data = data[key]
-        data[last] = value
-
-    return change
 
 
 def number(path: str, accepted, refused):

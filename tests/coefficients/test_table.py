@@ -24,6 +24,7 @@ from coefficients.table import (
     serialise,
 )
 from coefficients.table_parts import BLANK
+from tests.coefficients.changed import put
 
 FUZZ = FOLDER / "fuzz"
 SHIPPED = sorted(FUZZ.parent.glob("*/*/*.json"))
@@ -196,18 +197,6 @@ def test_shipped_tables_conform_to_the_shipped_schema(path):
 
 
 # What is refused
-
-
-def put(*path_and_value):
-    """Make a change that puts a value at a path."""
-    *path, last, value = path_and_value
-
-    def change(data):
-        for key in path:
-            data = data[key]
-        data[last] = value
-
-    return change
 
 
 def drop(key):
