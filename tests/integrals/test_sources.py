@@ -371,6 +371,20 @@ def test_jit_and_vmap_agree_with_single_points():
         np.testing.assert_allclose(together.error[index], alone.error, atol=1e-13)
 
 
+@pytest.mark.parametrize("count", [3, 100])
+def test_each_place_of_a_batch_takes_the_steps_that_it_needs(count):
+    """At a = 0 the integrand has a singularity, and elsewhere none: the places differ in steps."""
+    leg = quadrature(lambda t, a: jnp.sqrt(t + a), [(0, 1)]).legs([PLACE])["quadrature"]
+    a = np.random.default_rng(3).permutation(np.append(np.geomspace(1e-6, 1, count), [0, 0]))
+    together = jax.vmap(leg)(a)
+    exact = 2 / 3 * ((1 + a) ** 1.5 - a**1.5)
+    np.testing.assert_allclose(together.value, exact, rtol=1e-12)
+    assert (np.abs(together.value - exact) <= together.error).all()
+    alone = Estimate(*np.transpose([leg(each) for each in a]))
+    np.testing.assert_allclose(together.value, alone.value, rtol=1e-15)
+    np.testing.assert_allclose(together.error, alone.error, atol=1e-13)
+
+
 def test_a_nan_in_the_integrand_is_not_hidden():
     """The probes miss the place, but the rule does not."""
     reference = single(quadrature(lambda t, a: jnp.sqrt(t - 0.001), [(0, 1)]), PLACE)
