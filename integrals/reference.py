@@ -12,6 +12,7 @@ import numpy as np
 from jax import Array, Device
 
 from integrals.batches import in_batches
+from integrals.compilation import jit_for_few_calls
 from integrals.data import Data
 from integrals.devices import all_devices, spread
 from integrals.sampling import Sampling
@@ -153,7 +154,8 @@ class Reference:
     `smooth_along` has the axes along which many values may be interpolated
     (`integrals.along_lines`). `many` takes points (n, axes) of the domain and
     returns the values of another rule, with errors, that is faster than the best leg; None: there
-    is none. Only `integrals.many_points` uses these two.
+    is none. Only `integrals.many_points` uses these two. `few_calls` says that compiling the best
+    leg takes longer than evaluating it in a fit, so that fewer optimisations are better.
 
     A quantity that is only known by its `data` has no leg: it has values at the data's own points.
     A quantity that is only known by a table has neither legs nor data.
@@ -175,6 +177,7 @@ class Reference:
     data: Data | None = None
     smooth_along: tuple[Smooth, ...] = ()
     many: Callable[[Array], Estimate] | None = None
+    few_calls: bool = False
 
     @property
     def legs(self) -> dict[str, Leg]:
@@ -214,7 +217,8 @@ class Reference:
         more = self.proof_options if for_proof else {}
         options = tuple({**self.options_at(points), **more}.items())
         devices = all_devices()
-        evaluate = functools.partial(_estimates, self, options, devices)
+        compiled = _estimates_in_few_calls if self.few_calls else _estimates_in_many_calls
+        evaluate = functools.partial(compiled, self, options, devices)
         return in_batches(evaluate, points, self.batch * len(devices))
 
     def values(self, points: np.ndarray) -> np.ndarray:
@@ -222,9 +226,6 @@ class Reference:
         return np.asarray(self.estimates(points).value)
 
 
-# Compiled with all optimisations: fits and searches call it often, and with fewer of them the last
-# digits of P_s would differ, which leads fits of the largest error elsewhere.
-@functools.partial(jax.jit, static_argnums=(0, 1, 2))
 def _estimates(
     reference: Reference,
     options: tuple[tuple[str, Any], ...],
@@ -233,6 +234,10 @@ def _estimates(
 ) -> Estimate:
     leg = reference.legs[reference.best_leg]
     return spread(jax.vmap(lambda x: leg(*x, **dict(options))), devices)(points)
+
+
+_estimates_in_few_calls = jit_for_few_calls(_estimates, static=(0, 1, 2))
+_estimates_in_many_calls = jax.jit(_estimates, static_argnums=(0, 1, 2))
 
 
 def leg(*axes: Axis) -> Callable[[Leg], Leg]:

@@ -62,6 +62,7 @@ def make_reference(
         monte_carlo=legs.get("monte_carlo"),
         codomain=(float(codomain[0]), float(codomain[1])),
         data=data,
+        few_calls=True,
     )
 
 

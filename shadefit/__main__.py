@@ -9,9 +9,9 @@ import threading
 
 from shadefit.standard_streams import install_streams
 
-# Allocations between two searches for unreachable objects, and searches between those of older ones.
-# JAX makes and keeps very many objects: with Python's 700 allocations, a tenth of the time of
-# `refit` is spent in searches that find next to nothing.
+# New objects before a search for unreachable ones, and searches before one of older objects. JAX
+# makes and keeps very many objects: with Python's 700, a tenth of the time of `refit` is spent in
+# searches that find next to nothing.
 _GARBAGE = 50_000, 20, 50
 # By command: a message about the files that an interruption leaves, if there are partial results.
 _KEPT = {"search": "what it finished is in its folder, and the same command goes on from there"}

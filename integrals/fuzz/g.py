@@ -163,4 +163,5 @@ G = Reference(
     closed_form=closed_form,
     quadrature=quadrature,
     monte_carlo=monte_carlo,
+    few_calls=True,
 )

@@ -72,4 +72,5 @@ Q = Reference(
     closed_form=closed_form,
     quadrature=quadrature,
     monte_carlo=monte_carlo,
+    few_calls=True,
 )

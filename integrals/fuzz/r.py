@@ -99,4 +99,5 @@ R = Reference(
     # (docs/r-theorem.md).
     smooth_along=(Smooth("theta_f"), Smooth("alpha", logarithmic=True)),
     many=estimates_about_fibre,
+    few_calls=True,
 )
