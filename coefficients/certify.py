@@ -27,12 +27,17 @@ class Certification:
     """What was found of a table's largest error.
 
     `found` is None if there is no closed form to prove it against: then the largest error is only
-    `sampled`. `stated` is the largest error that the table states, if it states one.
+    `sampled`.
     """
 
     entry: Entry
     found: LargestError | None
-    stated: float | None
+
+    @property
+    def stated(self) -> float | None:
+        """Return the largest error that the table states, if it states one."""
+        errors = self.entry.require_table().errors
+        return None if errors is None else errors.off_grid.max
 
     @property
     def state(self) -> State:
@@ -45,10 +50,14 @@ class Certification:
 
     @property
     def understated(self) -> bool:
-        """Whether an error was found that is clearly above the stated one."""
-        if self.found is None or self.stated is None:
+        """Whether an error was found that is clearly above the stated one, or above its bound."""
+        if self.found is None:
             return False
-        return self.found.lower > self.stated * (1 + UNDERSTATED)
+        certificates = self.entry.require_table().certificates
+        bound = certificates.largest_error if certificates else None
+        limits = [] if self.stated is None else [self.stated * (1 + UNDERSTATED)]
+        limits += [] if bound is None else [bound.upper]
+        return any(self.found.lower > limit for limit in limits)
 
 
 def chosen(names: list[str], closed_forms: bool = False) -> list[Entry]:
@@ -82,15 +91,14 @@ def certify(
     bound to prove or refute instead; `threads`; `progress`, called several times a second. Raises
     ValueError for a ratio that is not above 1, and if the closed form cannot be bounded.
     """
-    fitted, table = entry.require_fitted(), entry.require_table()
-    stated = None if table.errors is None else table.errors.off_grid.max
+    fitted = entry.require_fitted()
     code = entry.problem.code_of_error(fitted)
     if code is None:
-        return Certification(entry, None, stated)
+        return Certification(entry, None)
     found = certify_largest_error(
         fitted, code, ratio, _seeds(entry), claim=claim, threads=threads, progress=progress
     )
-    return Certification(entry, found, stated)
+    return Certification(entry, found)
 
 
 def _seeds(entry: Entry) -> np.ndarray:

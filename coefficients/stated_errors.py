@@ -48,7 +48,7 @@ def misstatements(
     values, errors = np.asarray(exact.value), np.asarray(exact.error)
     own = iter(range(len(sample), len(points)))
     found: list[str | None] = []
-    for (each, _), record in zip(tables, stated, strict=True):
+    for (each, table), record in zip(tables, stated, strict=True):
         if record is None:
             found.append(None)
             continue
@@ -56,6 +56,7 @@ def misstatements(
         apart = np.abs(form_values(each, points[chosen]) - values[chosen])
         room = errors[chosen] + _ROUNDING
         there, sampled = apart[-1], (apart - room)[:-1].max()
+        bound = table.certificates.largest_error if table.certificates else None
         rms = np.sqrt(np.mean(np.maximum(apart - room, 0)[:-1] ** 2))
         if not abs(there - record.max) <= _SAME * record.max + room[-1]:
             found.append(f"the error at its place is {there:.4g}")
@@ -63,6 +64,8 @@ def misstatements(
             found.append(f"there is one of {sampled:.4g}")
         elif not rms <= _RMS_MISSED * record.rms:
             found.append(f"its rms error of {record.rms:.4g} is at least {rms:.4g}")
+        elif bound is not None and not there <= bound.upper + room[-1]:
+            found.append(f"its bound is {bound.upper:.4g}")
         else:
             found.append(None)
     return found

@@ -33,30 +33,41 @@ def main() -> None:
     a closed standard output is an error.
     """
     gc.set_threshold(*_GARBAGE)
-    install_streams()
+    try:
+        install_streams()
+        _watch_signals()
+        from shadefit.cli import main as run
+        from shadefit.compilation_cache import use_cache
+
+        use_cache()
+    except OSError as error:
+        # Modules cannot be read, because the process may open too few files, for example.
+        place = "" if error.filename is None else f"{error.filename}: "
+        print(f"shadefit: does not start: {place}{error.strerror}", file=sys.stderr)
+        sys.exit(2)
+    run()
+
+
+def _watch_signals() -> None:
     # Without this, Python raises KeyboardInterrupt only after compiled code returns, which may take
     # minutes, or in the middle of JAX, where the exception is lost or crashes. Instead, Python's
     # signal handler writes the number of the signal into a pipe at once, and another thread waits
     # for it. Signals that are ignored, such as SIGHUP under nohup, stay ignored.
     handled = [each for each in _SIGNALS if signal.getsignal(each) is not signal.SIG_IGN]
-    if handled:
-        reader, writer = os.pipe()
-        os.set_blocking(writer, False)
+    if not handled:
+        return
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    for each in handled:
+        signal.signal(each, lambda *_: None)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    waiting = threading.Thread(target=_wait_for_signal, args=[reader, handled], daemon=True)
+    try:
+        waiting.start()
+    except RuntimeError:
+        # The system allows no further thread: signals end the process as they do others.
         for each in handled:
-            signal.signal(each, lambda *_: None)
-        signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-        waiting = threading.Thread(target=_wait_for_signal, args=[reader, handled], daemon=True)
-        try:
-            waiting.start()
-        except RuntimeError:
-            # The system allows no further thread: signals end the process as they do others.
-            for each in handled:
-                signal.signal(each, signal.SIG_DFL)
-    from shadefit.cli import main as run
-    from shadefit.compilation_cache import use_cache
-
-    use_cache()
-    run()
+            signal.signal(each, signal.SIG_DFL)
 
 
 def _wait_for_signal(reader: int, handled: list[signal.Signals]) -> None:

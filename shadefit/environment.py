@@ -34,16 +34,21 @@ _REMOVED = re.compile(r"JAX_.*|EQX_.*|NPY_(EN|DIS)ABLE_CPU_FEATURES|OPENBLAS_COR
 _KEPT = re.compile(
     r"JAX_COMPILATION_CACHE_DIR|JAX_ENABLE_COMPILATION_CACHE|JAX_PERSISTENT_CACHE_.*"
 )
+# Tables are empty in a width of 0, and text is filled up with spaces to a huge one.
+_SIZE = re.compile(r"[1-9][0-9]{0,3}")
 # XLA ends the process if it does not know a flag. This one says how many devices there are.
 _XLA_FLAGS = "XLA_FLAGS"
 _KEPT_FLAG = re.compile(r"--xla_force_host_platform_device_count=[1-9]\d{0,3}")
 
 
 def fix_environment(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Set or remove every variable that would change what a command computes."""
+    """Set or remove every variable that would change what a command computes, or end it."""
     for name in list(environment):
         if _REMOVED.fullmatch(name) and not _KEPT.fullmatch(name):
             del environment[name]
+    for name in ("COLUMNS", "LINES"):
+        if not _SIZE.fullmatch(environment.get(name, "")):
+            environment.pop(name, None)
     flags = environment.pop(_XLA_FLAGS, "").split()
     kept = [flag for flag in flags if _KEPT_FLAG.fullmatch(flag)]
     if kept:

@@ -3,6 +3,8 @@
 These are the public functions. `integrals.many_points` chooses how exact values are computed.
 """
 
+from collections.abc import Iterator
+
 import jax.numpy as jnp
 import numpy as np
 
@@ -27,11 +29,11 @@ def values(of: Problem | Reference | FittedForm, points: np.ndarray) -> np.ndarr
     if not isinstance(of, FittedForm):
         return np.asarray(estimates(of, points).value)
     rows, shape = _rows(of.axes, points)
-    found = [np.zeros(0)]
-    for some in _chunks(rows):
-        inside = [axis.contains(some[:, k]) for k, axis in enumerate(of.axes)]
-        found.append(np.where(np.all(inside, axis=0), form_values(of, some), np.nan))
-    return np.concatenate(found).reshape(shape)
+    found = np.empty(len(rows))
+    for part in _parts(rows):
+        inside = [axis.contains(rows[part, k]) for k, axis in enumerate(of.axes)]
+        found[part] = np.where(np.all(inside, axis=0), form_values(of, rows[part]), np.nan)
+    return found.reshape(shape)
 
 
 def estimates(of: Problem | Reference, points: np.ndarray) -> Estimate:
@@ -45,16 +47,17 @@ def estimates(of: Problem | Reference, points: np.ndarray) -> Estimate:
     rows, shape = _rows(reference.axes, points)
     if not reference.legs:
         reference.best_leg  # noqa: B018  It says why there are no exact values.
-    found = [estimates_at_many(reference, some) for some in _chunks(rows)]
-    value, error = (
-        np.concatenate([np.zeros(0), *(np.asarray(getattr(each, name)) for each in found)])
-        for name in ("value", "error")
-    )
+    value, error = np.empty(len(rows)), np.empty(len(rows))
+    for part in _parts(rows):
+        found = estimates_at_many(reference, rows[part])
+        value[part], error[part] = found.value, found.error
     return Estimate(jnp.asarray(value.reshape(shape)), jnp.asarray(error.reshape(shape)))
 
 
 def _rows(axes: tuple[Axis, ...], points: np.ndarray) -> tuple[np.ndarray, tuple[int, ...]]:
     """Return points as rows (n, axes), and the shape of their values."""
+    if np.iscomplexobj(points):
+        raise ValueError("complex points: allowed are real numbers")
     array = np.asarray(points, dtype=float)
     if array.ndim == 0 or array.shape[-1] != len(axes):
         names = ", ".join(axis.name for axis in axes)
@@ -62,5 +65,5 @@ def _rows(axes: tuple[Axis, ...], points: np.ndarray) -> tuple[np.ndarray, tuple
     return array.reshape(-1, len(axes)), array.shape[:-1]
 
 
-def _chunks(rows: np.ndarray) -> list[np.ndarray]:
-    return [rows[first : first + _CHUNK] for first in range(0, len(rows), _CHUNK)]
+def _parts(rows: np.ndarray) -> Iterator[slice]:
+    return (slice(first, first + _CHUNK) for first in range(0, len(rows), _CHUNK))

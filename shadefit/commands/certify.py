@@ -52,8 +52,9 @@ def certify(
 
     This needs a C compiler, and a closed form of the exact value or bounds of it,
     as R has; other quantities are 'sampled'. The exit status is 1 if a bound is
-    refuted or not proven. With --rounding, no exact value is needed, and
-    exact/NAME is allowed too.
+    refuted or not proven, or if a table states less than an error that was found
+    ('understated'). With --rounding, no exact value is needed, and exact/NAME is
+    allowed too.
     """
     from coefficients.certify import RATIO, chosen, with_largest_error
     from coefficients.certify import certify as certify_entry
@@ -78,6 +79,7 @@ def certify(
             with_rounding,
             out,
         )
+        understated = False
         record, show = _rounding_record, _print_rounding
     else:
         ratio = RATIO if upper_ratio is None else upper_ratio
@@ -89,12 +91,14 @@ def certify(
             with_largest_error,
             out,
         )
+        understated = any(each.understated for each in found)
         record, show = _record, _print
     if json:
         print_json(CertifyOutput(tables=[record(each) for each in found]))
     else:
         show(found)
-    return 1 if any(each.state in ("refuted", "not proven") for each in found) else 0
+    failed = any(each.state in ("refuted", "not proven") for each in found)
+    return 1 if failed or understated else 0
 
 
 def _each(

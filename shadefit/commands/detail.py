@@ -57,7 +57,7 @@ def compensate(
     from coefficients.files import require_writable_file, write_whole_bytes
     from shadefit.detail import compensated_dds, compensated_image
     from shadefit.detail import operator as operator_of
-    from shadefit.detail.closed_loop import batches
+    from shadefit.detail.compensation import parts_of
     from shadefit.images import read_image, write_image
     from shadefit.material_outputs import DetailOutput
     from shadefit.progress import stages
@@ -71,9 +71,9 @@ def compensate(
     chosen = operator_of(operator)
     images = (read_image(target, colour_space), read_image(detail, colour_space))
     if suffix == ".dds":
-        count = images[0].pixels.shape[0] * images[0].pixels.shape[1] // 16
+        count = parts_of(*images[0].pixels.shape[:2])
         with stages() as progress:
-            stage = progress.begin("BC1 blocks", total=len(list(batches(count))))
+            stage = progress.begin("BC1 blocks", total=count)
             data, errors = compensated_dds(*images, chosen, encoder, stage.advance)
         write_whole_bytes(out, data)
     else:
@@ -131,7 +131,7 @@ def compose(
         colours = composed.pixels.shape[2]
         if wanted.pixels.shape[2] < colours:
             raise ValueError(f"{target}: it has fewer channels than the composed image")
-        errors = errors_between(composed.pixels, wanted.pixels[..., :colours].astype(float))
+        errors = errors_between(composed.pixels, wanted.pixels[..., :colours])
     write_image(out, composed, bits)
     _show(
         DetailOutput(

@@ -48,6 +48,7 @@ def encode(
 
     from coefficients.files import require_writable_file, write_whole_bytes
     from shadefit.images.image import (
+        bands,
         require_channels,
         require_power_of_two,
         require_same_size,
@@ -70,10 +71,13 @@ def encode(
             raise ValueError(f"{image.name}: a value is outside [0, 1]: allowed is [0, 1]")
     if mips:
         require_power_of_two(images[0])
-    along, across, turn = (image.pixels[..., 0].astype(np.float64) for image in images)
-    entries = entries_of_widths(
-        np.maximum(along, LEAST_ALPHA), np.maximum(across, LEAST_ALPHA), np.pi * turn
-    )
+    height, width, _ = images[0].pixels.shape
+    entries = np.empty((height, width, 3))
+    for rows in bands(height):
+        along, across, turn = (image.pixels[rows, :, 0].astype(np.float64) for image in images)
+        entries[rows] = entries_of_widths(
+            np.maximum(along, LEAST_ALPHA), np.maximum(across, LEAST_ALPHA), np.pi * turn
+        )
     matrices = mip_entries(entries) if mips else [entries]
     levels = [encode_level(each, encoding, format) for each in matrices]
     write_whole_bytes(out, write_map(levels, format))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shadefit.detail.closed_loop import closed_loop
+from shadefit.detail.closed_loop import batches, closed_loop
 from shadefit.detail.operators import Operator
 from shadefit.images.bc1 import (
     bc1_dds,
@@ -38,7 +38,7 @@ def errors_between(composed: np.ndarray, target: np.ndarray) -> ComposedErrors:
 
     `composed` and `target` are arrays of one shape, with values in [0, 1].
     """
-    return _errors((composed[rows], target[rows]) for rows in bands(len(composed)))
+    return _errors((composed[rows], target[rows].astype(float)) for rows in bands(len(composed)))
 
 
 def _errors(parts: Iterable[tuple[np.ndarray, np.ndarray]]) -> ComposedErrors:
@@ -54,19 +54,12 @@ def _errors(parts: Iterable[tuple[np.ndarray, np.ndarray]]) -> ComposedErrors:
     return ComposedErrors(rmse, psnr, largest)
 
 
-def tiled(detail: Image, like: Image) -> np.ndarray:
-    """Return a detail's pixels (height, width, channels), repeated to the size of another image.
-
-    An alpha channel is left out. Raises ValueError if the size is no multiple of the detail's, or
-    the numbers of channels differ.
-    """
-    tile = _tile(detail, like)
-    (height, width), (tall, wide) = tile.shape[:2], like.pixels.shape[:2]
-    return np.tile(tile, (tall // height, wide // width, 1))
-
-
 def _tile(detail: Image, like: Image) -> np.ndarray:
-    """Return a detail's pixels in float64. Raises ValueError as `tiled` does."""
+    """Return a detail's colours in float64, without alpha.
+
+    Raises ValueError if the size of the other image is no multiple of the detail's, if the numbers
+    of channels differ, and for values outside [0, 1].
+    """
     colours = _colours(detail)
     (height, width), (tall, wide) = colours.shape[:2], like.pixels.shape[:2]
     if tall % height or wide % width:
@@ -134,22 +127,36 @@ def compensated_dds(
     """Return the DDS file of a source in BC1 that gives the target with the detail.
 
     `encoder` is 'closed-loop', which minimises the error of the composed image, or 'quicktex',
-    which minimises that of the source. `advance` is called after each part of 4096 blocks. The
-    errors are those of the blocks as texture2ddecoder decodes them.
+    which minimises that of the source. `advance` is called after each part of at most 4096
+    blocks. The errors are those of the blocks as texture2ddecoder decodes them.
     """
     if encoder not in ENCODERS:
         raise ValueError(f"encoder {encoder} is unknown: allowed are {', '.join(ENCODERS)}")
-    wanted, onto = _within(target), tiled(detail, target)
-    require_blocks(image_of(wanted, target.colour_space, target.name))
-    height, width = wanted.shape[:2]
-    if encoder == "closed-loop":
-        parts = closed_loop(blocks_of(wanted), blocks_of(onto), operator, advance)
-        blocks = packed(*parts)
-    else:
-        blocks = encode_bc1(operator.source(wanted, onto))
-    decoded = decode_bc1(blocks, height, width) / 255
-    errors = errors_between(operator.blend(decoded, onto), wanted)
-    return bc1_dds(blocks, height, width), errors
+    onto = _tile(detail, target)
+    require_blocks(image_of(target.pixels[..., :3], target.colour_space, target.name))
+    height, width = target.pixels.shape[:2]
+    encoded = []
+
+    def parts() -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        for rows in bands(height):
+            wanted, under = _within(target, rows), _tiled_rows(onto, target, rows)
+            if encoder == "closed-loop":
+                found = closed_loop(blocks_of(wanted), blocks_of(under), operator, advance)
+                blocks = packed(*found)
+            else:
+                blocks = encode_bc1(operator.source(wanted, under))
+            encoded.append(blocks)
+            decoded = decode_bc1(blocks, len(wanted), width) / 255
+            yield operator.blend(decoded, under), wanted
+
+    errors = _errors(parts())
+    return bc1_dds(b"".join(encoded), height, width), errors
+
+
+def parts_of(height: int, width: int) -> int:
+    """Return how often `compensated_dds` calls `advance` with the encoder 'closed-loop'."""
+    blocks = ((rows.stop - rows.start) * width // 16 for rows in bands(height))
+    return sum(len(list(batches(each))) for each in blocks)
 
 
 def _within(image: Image, rows: slice = _ALL) -> np.ndarray:

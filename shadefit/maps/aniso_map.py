@@ -16,6 +16,7 @@ from coefficients.textures.dds import write_coloured_dds
 from programs import Program, evaluate, trace
 from programs.functions import Parameter, function
 from shadefit.images.block_compression import decode_blocks, encode_blocks
+from shadefit.images.image import bands
 from shading.maps.encode import encode, widths_of_entries
 from shading.maps.encodings import decoding
 from shading.maps.total_variation import total_variation
@@ -92,15 +93,20 @@ def encode_level(entries: Entries, encoding: str, format: str) -> EncodedLevel:
     """
     if format not in FORMATS:
         raise ValueError(f"no format is called {format!r}: allowed are {', '.join(FORMATS)}")
-    codes = quantised(entries, encoding).astype(np.uint8)
-    height, width, _ = codes.shape
+    height, width, _ = entries.shape
+    codes = np.empty(entries.shape, np.uint8)
+    for rows in bands(height):
+        codes[rows] = quantised(entries[rows], encoding)
     if format == "rgba8":
         opaque = np.full((height, width, 1), 255, np.uint8)
         data, read = np.concatenate([codes, opaque], axis=2).tobytes(), codes
     else:
         data = encode_blocks(format, codes)
         read = decode_blocks(format, data, width, height)
-    error = total_variation(entries, decoded(encoding, read / 255)[..., :3])
+    error = np.empty((height, width))
+    for rows in bands(height):
+        seen = decoded(encoding, read[rows] / 255)[..., :3]
+        error[rows] = total_variation(entries[rows], seen)
     return EncodedLevel(
         data, read, float(error.mean()), float(np.quantile(error, 0.99)), float(error.max())
     )

@@ -18,6 +18,7 @@ from shadefit.images import (
     require_same_size,
     write_image,
 )
+from shadefit.images.image import bands
 from shadefit.maps.filters import LobeMap, lobe_map
 
 Vectors = Literal["unsigned", "signed"]
@@ -67,29 +68,35 @@ def read_lobe_map(
     first = read_image(normals, colour_space)
     require_channels(first, 2, 3, 4)
     require_power_of_two(first)
-    found = _normals(_vectors(first, vectors), first.name)
     second = read_image(roughness, colour_space)
     require_channels(second, 1, 2, 3)
     require_same_size(first, second)
-    along, across = _widths(second, widths)
-    tangent = np.broadcast_to([1.0, 0.0], (*along.shape, 2))
+    third = None
     if direction is not None:
         third = read_image(direction, colour_space)
         require_channels(third, 2, 3)
         require_same_size(first, third)
-        tangent = _unit_tangents(_vectors(third, vectors)[..., :2], third.name)
-    found[..., 1] *= up
-    x, y = tangent[..., 0], up * tangent[..., 1]
-    along, across = along**2, across**2
-    matrix = [along * x * x + across * y * y, (along - across) * x * y]
-    return lobe_map(found, np.stack([*matrix, along * y * y + across * x * x], axis=-1))
+    found, matrices = (np.empty((*first.pixels.shape[:2], 3)) for _ in range(2))
+    for rows in bands(len(found)):
+        found[rows] = _normals(_vectors(first, vectors, rows), first.name)
+        found[rows, :, 1] *= up
+        along, across = _widths(second, widths, rows)
+        x, y = 1.0, 0.0
+        if third is not None:
+            tangent = _unit_tangents(_vectors(third, vectors, rows)[..., :2], third.name)
+            x, y = tangent[..., 0], up * tangent[..., 1]
+        along, across = along**2, across**2
+        matrices[rows, :, 0] = along * x * x + across * y * y
+        matrices[rows, :, 1] = (along - across) * x * y
+        matrices[rows, :, 2] = along * y * y + across * x * x
+    return lobe_map(found, matrices)
 
 
-def _vectors(image: Image, vectors: Vectors | None) -> np.ndarray:
-    """Return the vectors of an image, in float64."""
+def _vectors(image: Image, vectors: Vectors | None, rows: slice) -> np.ndarray:
+    """Return the vectors of some rows of an image, in float64."""
     if vectors is None:
         vectors = "signed" if image.name.lower().endswith(".exr") else "unsigned"
-    values = image.pixels[..., :3].astype(float)
+    values = image.pixels[rows, :, :3].astype(float)
     return values if vectors == "signed" else 2 * values - 1
 
 
@@ -121,8 +128,8 @@ def _unit_tangents(vectors: np.ndarray, name: str) -> np.ndarray:
     return vectors / length
 
 
-def _widths(image: Image, widths: Widths) -> tuple[np.ndarray, np.ndarray]:
-    values = image.pixels.astype(float)
+def _widths(image: Image, widths: Widths, rows: slice) -> tuple[np.ndarray, np.ndarray]:
+    values = image.pixels[rows].astype(float)
     if np.min(values) < 0 or np.max(values) > 1:
         raise ValueError(
             f"{image.name}: roughness from {np.min(values):.3g} to {np.max(values):.3g}: "
@@ -145,14 +152,16 @@ def write_chain(
     up = 1.0 if convention == "opengl" else -1.0
     written = []
     for number, level in enumerate(levels):
-        vectors = level.normals * [1, up, 1]
-        along, across = np.sqrt(level.roughness[..., 0]), np.sqrt(level.roughness[..., 2])
-        correlation = up * level.roughness[..., 1] / (along * across)
-        aniso = np.stack([along, 0.5 + 0.5 * correlation, across], axis=-1)
-        if file_format == "png":
-            vectors = 0.5 + 0.5 * vectors
+        vectors, aniso = (np.empty(level.normals.shape, np.float32) for _ in range(2))
+        for rows in bands(len(vectors)):
+            normals, roughness = level.normals[rows] * [1, up, 1], level.roughness[rows]
+            vectors[rows] = 0.5 + 0.5 * normals if file_format == "png" else normals
+            along, across = np.sqrt(roughness[..., 0]), np.sqrt(roughness[..., 2])
+            correlation = up * roughness[..., 1] / (along * across)
+            parts = np.stack([along, 0.5 + 0.5 * correlation, across], axis=-1)
+            aniso[rows] = np.clip(parts, 0, 1)
         paths = tuple(folder / f"{name}-{number:02}.{file_format}" for name in ("normal", "aniso"))
-        for path, values in zip(paths, (vectors, np.clip(aniso, 0, 1)), strict=True):
+        for path, values in zip(paths, (vectors, aniso), strict=True):
             write_image(path, image_of(values, "linear", str(path)), bits=16)
         written.append((paths[0], paths[1]))
     return written

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shadefit.images.image import bands
 from shadefit.maps.best_lobe import STEPS, best_lobe, slopes_of_lobes, unit_slopes
 from shadefit.maps.lobes import (
     Normals,
@@ -65,13 +66,20 @@ def lobe_map(normals: np.ndarray, roughness: np.ndarray) -> LobeMap:
     for name, each in (("normals", normals), ("roughness", roughness)):
         if each.ndim != 3 or each.shape[-1] != 3:
             raise ValueError(f"{name} of shape {each.shape}: allowed is (height, width, 3)")
-        if not np.all(np.isfinite(each)):
-            raise ValueError(f"{name} with NaN or infinity: allowed are finite numbers")
     if normals.shape != roughness.shape:
         raise ValueError(f"roughness of shape {roughness.shape}: allowed is {normals.shape}")
     for side, name in zip(normals.shape[:2], ("height", "width"), strict=True):
         if side < 1 or side & (side - 1):
             raise ValueError(f"{name} = {side}: allowed are powers of two")
+    for rows in bands(len(normals)):
+        _require_lobes(normals[rows], roughness[rows])
+    return LobeMap(normals, roughness)
+
+
+def _require_lobes(normals: Normals, roughness: Roughness) -> None:
+    for name, each in (("normals", normals), ("roughness", roughness)):
+        if not np.all(np.isfinite(each)):
+            raise ValueError(f"{name} with NaN or infinity: allowed are finite numbers")
     length = np.sqrt(np.sum(normals * normals, axis=-1))
     worst = float(np.max(np.abs(length - 1)))
     if worst > 1e-6:
@@ -88,7 +96,6 @@ def lobe_map(normals: np.ndarray, roughness: np.ndarray) -> LobeMap:
         raise ValueError(
             f"roughness with the width {largest**0.5:.4g}: allowed are widths in (0, 1]"
         )
-    return LobeMap(normals, roughness)
 
 
 def filter_chain(

@@ -48,6 +48,20 @@ def test_a_changed_table_is_refused(tmp_path, changes, said):
     assert said in str(error.value)
 
 
+def test_a_bound_below_an_error_is_refused(tmp_path):
+    largest, at = ERRORS["off_grid"]["max"], ERRORS["off_grid"]["where"]
+    certificates = packaged_table("q").certificates.model_dump()
+    for part in (0.9, 1.01):
+        bound = {"lower": 0.0, "at": at, "upper": part * largest, "boxes": 1}
+        changed = {**certificates, "largest_error": bound}
+        entry = resolve(changed_table(tmp_path, certificates=changed))
+        if part > 1:
+            require_stated(entry)
+            continue
+        with pytest.raises(ValueError, match=f"but its bound is {part * largest:.4g}"):
+            require_stated(entry)
+
+
 @pytest.mark.parametrize(("rms", "refused"), [(0.0, True), (4e-4, True), (1e-3, False)])
 def test_an_rms_error_that_is_far_too_small_is_refused(tmp_path, rms, refused):
     errors = {**ERRORS, "off_grid": {**ERRORS["off_grid"], "rms": rms}}

@@ -9,6 +9,7 @@ from PIL import Image
 
 from coefficients.textures.dds import write_coloured_dds
 from shadefit.cli import main
+from shadefit.images import image
 from shadefit.maps.aniso_map import decoded, encode_level, mip_entries, quantised, write_map
 from shadefit.maps.encoding_errors import (
     errors_of,
@@ -78,7 +79,9 @@ def test_a_level_of_another_size_is_refused():
         write_coloured_dds([bytes(2 * 16), bytes(5)], 8, 4, "bc7")
 
 
-def test_errors_are_those_of_the_texels_that_are_read(entries):
+@pytest.mark.parametrize("rows", [5, 256])
+def test_errors_are_those_of_the_texels_that_are_read(entries, monkeypatch, rows):
+    monkeypatch.setattr(image, "_ROWS", rows)
     level = encode_level(entries, "published", "rgba8")
     np.testing.assert_array_equal(level.texels, quantised(entries, "published"))
     error = total_variation(entries, decoded("published", level.texels / 255)[..., :3])

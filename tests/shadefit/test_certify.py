@@ -4,11 +4,13 @@ import json
 
 import pytest
 
-from coefficients.table import read
+from coefficients.packaged import packaged_table
+from coefficients.table import read, serialise
 from fitting.proofs import largest_error
 from programs.bounding.compiled import compiler_missing
 from quantities.fuzz import r_error
 from shadefit.cli import main
+from tests.coefficients.changed import put
 
 needs_compiler = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
 
@@ -35,6 +37,21 @@ def test_tables_are_proven_printed_and_written(capsys, tmp_path, monkeypatch):
     status, out, _ = run(capsys, "certify", str(tmp_path / "q-9.json"))
     assert status == 0
     assert "proven" in out and "density 0.5" in out
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    "place", [("errors", "off_grid", "max"), ("certificates", "largest_error", "upper")]
+)
+def test_a_table_that_states_less_than_an_error_fails(capsys, tmp_path, place):
+    data = json.loads(serialise(packaged_table("best/q-9")))
+    put("certificates", "largest_error", "lower", 0.0)(data)
+    put(*place, 0.99 * data["errors"]["off_grid"]["max"])(data)
+    path = tmp_path / "table.json"
+    path.write_text(json.dumps(data))
+    status, out, _ = run(capsys, "certify", str(path))
+    assert status == 1
+    assert "proven, understated" in out
 
 
 @needs_compiler

@@ -17,8 +17,9 @@ from shadefit.detail import (
     operator,
 )
 from shadefit.detail.closed_loop import closed_loop
+from shadefit.detail.compensation import ENCODERS
 from shadefit.detail.photographs import MATERIALS, PAINTINGS, painted, photograph
-from shadefit.images import image_of, read_image, write_image
+from shadefit.images import image, image_of, read_image, write_image
 from shadefit.images.bc1 import (
     blocks_of,
     decode_bc1,
@@ -110,6 +111,17 @@ def test_the_dds_file_holds_what_the_errors_say():
     _, coded = compensated_dds(*images, operator("smooth-overlay"), "quicktex")
     assert errors.rmse < coded.rmse
     assert compensated_dds(*images, operator("smooth-overlay"))[0] == data
+
+
+@pytest.mark.parametrize("encoder", ENCODERS)
+def test_bands_of_rows_change_no_byte(monkeypatch, encoder):
+    target, detail = _pictures(edge=32)
+    images = image_of(target, "srgb", "t.png"), image_of(detail[:16, :16], "srgb", "d.png")
+    whole, errors = compensated_dds(*images, operator("smooth-overlay"), encoder)
+    monkeypatch.setattr(image, "_ROWS", 12)
+    parts, again = compensated_dds(*images, operator("smooth-overlay"), encoder)
+    assert parts == whole
+    np.testing.assert_allclose(again.rmse, errors.rmse, rtol=1e-14)
 
 
 def test_bad_images_are_refused():

@@ -73,6 +73,31 @@ def test_variables_that_change_numbers_are_fixed_and_others_stay():
     assert bare == FIXED
 
 
+@pytest.mark.parametrize("size", ["0", "²", "10000000"])
+def test_a_terminal_of_no_possible_size_loses_no_output(tmp_path, size):
+    """The first made tables empty, the second was an error, and the third gave 270 MB of spaces."""
+    given = {"COLUMNS": size, "LINES": size}
+    for command in (["cost", "q"], ["cost", "--help"]):
+        status, out, err, _ = shadefit(tmp_path, *command, **given)
+        assert (status, err) == (0, b"") and 100 < len(out) < 20_000
+
+
+@pytest.mark.parametrize("limit", [5, 6, 8])
+def test_too_few_files_end_a_command_in_one_line(limit):
+    command = f"ulimit -n {limit}; exec {sys.executable} -m shadefit list --json"
+    done = subprocess.run(
+        ["sh", "-c", command],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode == 0:
+        assert limit > 5 and json.loads(done.stdout) and not done.stderr
+    else:
+        assert done.returncode == 2
+        assert done.stderr.startswith("shadefit: ") and done.stderr.count("\n") == 1
+
+
 def test_all_hostile_variables_together_end_no_command(tmp_path):
     status, out, err, made = shadefit(tmp_path, "cost", "q", "--json", **HOSTILE)
     assert (status, err, made) == (0, b"", {})

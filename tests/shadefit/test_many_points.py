@@ -42,3 +42,8 @@ def test_points_of_another_number_of_arguments_are_refused(points):
             ValueError, match=r"points of shape .*: allowed are \(…, 1\), of density"
         ):
             sf.values(each, points)
+
+
+def test_complex_points_are_refused():
+    with pytest.raises(ValueError, match="complex points: allowed are real numbers"):
+        sf.values(sf.Q, np.array([[1j]]))
