@@ -287,6 +287,19 @@ def test_cases_that_belong_together_are_not_mixed():
     assert kernel.enclose(np.array([[0.4, 0.6]]))[1] <= 1 + 1e-12
 
 
+def test_each_combination_of_open_conditions_counts():
+    """The second condition is decided. If the first and the third agree, the sum is 0."""
+
+    def steps(x):
+        second = jnp.where(x < 0.25, 9.0, 0.0)
+        return jnp.where(x < 0.5, 0.0, 1.0) + second - jnp.where(x < 0.51, 0.0, 1.0)
+
+    kernel = kernel_of(steps)
+    for low, high, *centre in (kernel.enclose(np.array([[0.45, each]])) for each in (0.54, 0.57)):
+        assert low == -1 and high == 1
+        assert centre[0] <= 0 and centre[1] >= 1
+
+
 def test_more_conditions_than_can_be_combined_give_no_bounds():
     def many(x):
         return sum(jnp.where(x < 0.5 + k * 1e-6, x, 1 - x) for k in range(12))
