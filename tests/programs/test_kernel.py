@@ -291,8 +291,9 @@ def test_each_combination_of_open_conditions_counts():
     """The second condition is decided. If the first and the third agree, the sum is 0."""
 
     def steps(x):
-        second = jnp.where(x < 0.25, 9.0, 0.0)
-        return jnp.where(x < 0.5, 0.0, 1.0) + second - jnp.where(x < 0.51, 0.0, 1.0)
+        total = jnp.where(x < 0.5, 0.0, 1.0)
+        total += jnp.where(x < 0.25, 9.0, 0.0)
+        return total - jnp.where(x < 0.51, 0.0, 1.0)
 
     kernel = kernel_of(steps)
     for low, high, *centre in (kernel.enclose(np.array([[0.45, each]])) for each in (0.54, 0.57)):

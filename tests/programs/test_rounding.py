@@ -101,6 +101,10 @@ CANCELLED = {
         lambda x, y: jnp.where(y < 1.5, x, (x + 100) - 100),
         lambda a, y: 0 if y < 1.5 else 100 + 2 * a * a,
     ),
+    "cases, reversed": (
+        lambda x, y: jnp.where(y < 1.5, (x + 100) - 100, x),
+        lambda a, y: 100 + 2 * a * a if y < 1.5 else 0,
+    ),
 }
 
 
@@ -133,6 +137,10 @@ def test_bounds_at_points_are_tight_and_those_on_boxes_hold_at_their_points(name
         ([2.25, 1.1], [2.25, 2.1]),
         ([1, 1.0], [4, 1.9]),
         ([1, 1.1], [4, 2.0]),
+        ([1.9, 1.42], [2.2, 1.42]),
+        ([1.9, 1.44], [2.2, 1.44]),
+        ([2.0, 1.38], [2.0, 1.46]),
+        ([2.0, 1.36], [2.0, 1.44]),
     ):
         _, upper, *at_centre = bound(low, high)
         x, y = np.mean([low, high], axis=0)
@@ -363,13 +371,22 @@ def test_four_outcomes_that_rounding_may_change_are_combined(count, bounded):
 
 
 @needs_compiler
+def test_the_largest_jump_on_a_box_counts():
+    """The cases of a condition that is uncertain at y = 1.5 meet at the centre of the box only."""
+    jump = program_of(lambda x, y: jnp.where((y + 1) - 1 < 1.5, x, 3 - x), 2)
+    kernel = RoundingKernels({"jump": jump}, IEEE, 2)
+    _, upper, *_ = kernel("jump", [1.0, 1.5], [2.0, 1.5])
+    assert 1 <= upper <= 1 + 1e-6
+
+
+@needs_compiler
 def test_each_combination_of_uncertain_outcomes_counts():
     """The second condition is certain at x = ½. If the first and the third agree, the sum is 0."""
 
     def steps(x):
-        first, third = ((x + k) - k < 0.5 for k in (1, 2))
-        second = jnp.where(x < 0.25, 9.0, 0.0)
-        return jnp.where(first, 0.0, 1.0) + second - jnp.where(third, 0.0, 1.0)
+        total = jnp.where((x + 1) - 1 < 0.5, 0.0, 1.0)
+        total += jnp.where(x < 0.25, 9.0, 0.0)
+        return total - jnp.where((x + 2) - 2 < 0.5, 0.0, 1.0)
 
     kernel = RoundingKernels({"steps": program_of(steps, 1)}, IEEE, 1)
     _, upper, *_ = kernel("steps", 0.5, 0.5)
