@@ -380,6 +380,19 @@ def test_the_largest_jump_on_a_box_counts():
 
 
 @needs_compiler
+def test_outcomes_are_compared_without_their_rounding():
+    """Both cases have the value of the first step, so that no outcome changes it."""
+
+    def same(x, y):
+        total = x + 100
+        return jnp.where(y < 1.5, total, jnp.maximum(total, 1))
+
+    kernel = RoundingKernels({"same": program_of(same, 2)}, IEEE, 2)
+    _, upper, *_ = kernel("same", [1.0, 1.4], [1.0, 1.6])
+    assert 101 * 2.0**-24 <= upper <= 101 * 2.0**-24 * (1 + 1e-5)
+
+
+@needs_compiler
 def test_each_combination_of_uncertain_outcomes_counts():
     """The second condition is certain at x = ½. If the first and the third agree, the sum is 0."""
 
