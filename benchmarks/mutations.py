@@ -114,7 +114,6 @@ def mutants(module: str) -> list[Mutant]:
     else:
         tree = ast.parse(text)
         found = [(number, what, ast.unparse(tree)) for number, what in changes(tree)]
-        original = ast.unparse(ast.parse(text))
-        found = [each for each in found if each[2] != original]
-    unlike = {source: (number, what) for number, what, source in reversed(found)}
+        text = ast.unparse(ast.parse(text))
+    unlike = {source: (number, what) for number, what, source in reversed(found) if source != text}
     return [Mutant(module, n, lines[n - 1].strip(), w, s) for s, (n, w) in unlike.items()][::-1]

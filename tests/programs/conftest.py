@@ -1,8 +1,19 @@
-"""A fixture for the tests of toolchains."""
+"""Fixtures for the tests of toolchains and of compiled interval arithmetic."""
 
 import tempfile
 
 import pytest
+
+from programs.bounding import compiled
+
+# GCC sees loops that leave their arrays, if the arrays' lengths are constants.
+_ARRAYS = ("-Werror=array-bounds", "-Werror=aggressive-loop-optimizations")
+
+
+@pytest.fixture(autouse=True)
+def arrays_are_checked(monkeypatch):
+    """Refuse code of the kernel that reads or writes beyond the end of an array."""
+    monkeypatch.setattr(compiled, "_FLAGS", (*compiled._FLAGS, *_ARRAYS))
 
 
 @pytest.fixture

@@ -1,13 +1,17 @@
 """Kernels for tests: many expressions in one compiled search, and one expression alone."""
 
+import re
 from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from programs.bounding.compiled import Kernel, compile_kernel
 from programs.bounding.interval_code import INTERVAL_C
+from programs.bounding.rounding import rounding_parts
+from programs.bounding.rounding_model import RoundingModel
 from programs.functions import Function, Parameter
 from programs.printing.printer import write_source
+from programs.program import Program
 
 NAMES = "xyz"
 
@@ -42,5 +46,32 @@ class Kernels:
 
     def __call__(self, name: str, lower, upper) -> tuple[float, float, float, float]:
         """Bound an expression on a box, and its value at the centre."""
+        self.kernel.library.choose_place(self.places[name])
+        return self.kernel.enclose(np.stack([np.atleast_1d(lower), np.atleast_1d(upper)], axis=1))
+
+
+class RoundingKernels:
+    """A kernel with the bounds of the rounding errors of several programs, as `Kernels`."""
+
+    def __init__(self, programs: Mapping[str, Program], model: RoundingModel, sides: int):
+        self.places = {name: k for k, name in enumerate(programs)}
+        given = " ".join(f"v[{k}] = x[{k}];" for k in range(sides))
+        code: list[str] = []
+        for k, program in enumerate(programs.values()):
+            first, *parts = rounding_parts(program, model, given, [False] * sides)
+            code += [] if code else [first]
+            code += [
+                re.sub(r"\b(error_of|value_of|error_at)\b", rf"\1_{k}", part) for part in parts
+            ]
+        cases = " ".join(f"case {k}: return error_at_{k}(K, x);" for k in range(len(programs)))
+        code.append(
+            f"static int place; void choose_place(int k) {{ place = k; }}\n"
+            f"static jet error_at(boxes *K, const jet *x) {{ switch (place) {{ {cases} }} "
+            "K->bad = ~(M){0}; return x[0]; }"
+        )
+        self.kernel = compile_kernel(code, sides)
+
+    def __call__(self, name: str, lower, upper) -> tuple[float, float, float, float]:
+        """Bound the error on a box, and that at its centre."""
         self.kernel.library.choose_place(self.places[name])
         return self.kernel.enclose(np.stack([np.atleast_1d(lower), np.atleast_1d(upper)], axis=1))

@@ -1,18 +1,16 @@
 """The bound of rounding at a point: the sum of derivatives, which 40 digits give for each rule."""
 
 import functools
-import re
 
 import mpmath
-import numpy as np
 import pytest
 
 from programs.bounding.adjoints import _RULES
-from programs.bounding.compiled import Kernel, compile_kernel, compiler_missing
-from programs.bounding.rounding import rounding_parts
+from programs.bounding.compiled import compiler_missing
 from programs.bounding.rounding_model import IEEE, ULP
 from programs.operations import OPERATIONS
 from programs.program import Program, Step
+from tests.programs.kernels import RoundingKernels
 
 # The functions of all operations take four seconds to compile.
 pytestmark = [
@@ -50,23 +48,8 @@ def program_of(operation: str) -> Program:
 
 
 @functools.cache
-def kernel() -> Kernel:
-    """Compile the bounds of all operations; `choose_place` selects one."""
-    code, names = [], []
-    for k, operation in enumerate(_RULES):
-        first, *parts = rounding_parts(
-            program_of(operation), IEEE, "v[0] = x[0]; v[1] = x[1];", [False] * 2
-        )
-        code += [] if code else [first]
-        for part in parts:
-            code.append(re.sub(r"\b(error_of|value_of|error_at)\b", rf"\1_{k}", part))
-        names.append(f"error_at_{k}")
-    code.append(
-        f"static jet (*const all_of_them[])(boxes *, const jet *) = {{ {', '.join(names)} }};\n"
-        "static int place; void choose_place(int k) { place = k; }\n"
-        "static jet error_at(boxes *K, const jet *x) { return all_of_them[place](K, x); }"
-    )
-    return compile_kernel(code, 2)
+def kernels() -> RoundingKernels:
+    return RoundingKernels({name: program_of(name) for name in _RULES}, IEEE, 2)
 
 
 def expected(operation: str, x: float, y: float):
@@ -83,12 +66,11 @@ def expected(operation: str, x: float, y: float):
 
 @pytest.mark.parametrize("operation", _RULES)
 def test_a_bound_is_the_sum_of_derivatives(operation):
-    kernel().library.choose_place(list(_RULES).index(operation))
     with mpmath.workdps(40):
         for point in DEFINED.get(operation, POINTS):
             if operation in ("asin", "acos", "log1p") and point[0] < 0:
                 continue
-            bounds = kernel().enclose(np.array([[each] * 2 for each in point]))
+            bounds = kernels()(operation, point, point)
             exact = expected(operation, *point)
             # Terms of the second order, and the product, which may be fused with a sum
             assert exact <= bounds[1] <= exact * (1 + 1e-5) + 1e-30

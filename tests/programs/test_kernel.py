@@ -1,4 +1,4 @@
-"""The compiled interval arithmetic: rounding, undefined values, functions, and its search."""
+"""The compiled interval arithmetic: rounding, undefined values, functions and conditions."""
 
 import functools
 import itertools
@@ -11,11 +11,9 @@ import pytest
 
 from programs.bounding import compiled
 from programs.bounding.compiled import compiler_missing
-from programs.bounding.largest import Worker, bound_largest, bound_largest_slowly
-from programs.functions import Function, Parameter
+from programs.bounding.largest import bound_largest
 from programs.toolchains.process import ToolchainError
-from programs.tracing.tracer import trace
-from tests.programs.kernels import NAMES, Kernels, kernel_of
+from tests.programs.kernels import Kernels, kernel_of
 from tests.programs.test_loopholes import BOX, FAULTS, HIDDEN, SOUND
 
 pytestmark = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
@@ -289,6 +287,20 @@ def test_cases_that_belong_together_are_not_mixed():
     assert kernel.enclose(np.array([[0.4, 0.6]]))[1] <= 1 + 1e-12
 
 
+def test_each_combination_of_open_conditions_counts():
+    """The second condition is decided. If the first and the third agree, the sum is 0."""
+
+    def steps(x):
+        total = jnp.where(x < 0.5, 0.0, 1.0)
+        total += jnp.where(x < 0.25, 9.0, 0.0)
+        return total - jnp.where(x < 0.51, 0.0, 1.0)
+
+    kernel = kernel_of(steps)
+    for low, high, *centre in (kernel.enclose(np.array([[0.45, each]])) for each in (0.54, 0.57)):
+        assert low == -1 and high == 1
+        assert centre[0] <= 0 and centre[1] >= 1
+
+
 def test_more_conditions_than_can_be_combined_give_no_bounds():
     def many(x):
         return sum(jnp.where(x < 0.5 + k * 1e-6, x, 1 - x) for k in range(12))
@@ -296,95 +308,3 @@ def test_more_conditions_than_can_be_combined_give_no_bounds():
     kernel = kernel_of(many)
     assert not np.isfinite(kernel.enclose(np.array([[0.4, 0.6]]))[0])
     assert np.isfinite(kernel.enclose(np.array([[0.1, 0.2]]))[0])
-
-
-# The search
-
-KNOWN = {
-    # expression, box, its largest absolute value
-    "parabola": (lambda x: x * (1 - x), [(0, 1)], 0.25),
-    "at an end": (lambda x: 1 / (1 + x) - 0.2, [(0, 1)], 0.8),
-    "negative": (
-        lambda x: -jnp.exp(-x) * jnp.sin(3 * x),
-        [(0, 2)],
-        np.exp(-np.arctan(3) / 3) * 3 / 10**0.5,
-    ),
-    "constant": (lambda x: 0 * x + 0.7, [(0, 1)], 0.7),
-    "two sides": (lambda x, y: x * x - y * y + x * y / 2, [(-1, 1), (-1, 2)], 4.25),
-    "narrow": (lambda x, y: 1 / (1 + 1e4 * ((x - 0.3) ** 2 + (y - 0.7) ** 2)), [(0, 1), (0, 1)], 1),
-    "kink": (lambda x, y: jnp.maximum(x, y) - jnp.abs(x - 0.5), [(0, 1), (0, 1)], 1.0),
-    "power": (lambda x: jnp.power(x, 2.5) - jnp.power(x, 0.5), [(0, 1)], 0.8 * 0.2**0.25),
-    "three sides": (lambda x, y, z: x * y * z - (x + y + z) / 3, [(0, 1)] * 3, 2 / 3),
-}
-
-
-@functools.cache
-def known(name: str):
-    return kernel_of(KNOWN[name][0], len(KNOWN[name][1]))
-
-
-@pytest.mark.parametrize("threads", [1, 2])
-@pytest.mark.parametrize("name", KNOWN)
-def test_the_largest_value_is_found_and_bounded(name, threads):
-    call, box, exact = KNOWN[name]
-    found = bound_largest(known(name), np.array(box, float), 1.001, threads=threads)
-    assert found.lower <= exact * (1 + 1e-6) and found.upper >= exact * (1 - 1e-6)
-    assert found.lower <= found.upper <= 1.0011 * found.lower
-    value = abs(float(call(*found.at)))
-    assert value == pytest.approx(found.lower, rel=1e-9)
-
-
-@pytest.mark.parametrize("name", ["parabola", "two sides", "narrow"])
-def test_the_search_in_python_agrees(name):
-    call, box, exact = KNOWN[name]
-    parameters = tuple(Parameter(each, (-1.0, 1.0)) for each in NAMES[: len(box)])
-    program = trace(Function("toy", "", parameters, None, "value", call))
-    found = bound_largest_slowly(program, np.array(box, float), 1.01)
-    assert exact * (1 - 1e-6) <= found.upper <= 1.01 * exact
-
-
-def test_a_claim_is_proven_or_refuted_with_a_point():
-    call, box, exact = KNOWN["narrow"]
-    kernel = known("narrow")
-    proven = bound_largest(kernel, np.array(box, float), 1.01, claim=1.0001)
-    assert exact <= proven.upper <= 1.0001
-    refuted = bound_largest(kernel, np.array(box, float), 1.01, claim=0.999)
-    assert refuted.upper is None and refuted.lower > 0.999
-    assert call(*refuted.at) > 0.999
-
-
-def test_a_ratio_that_is_not_above_one_is_refused():
-    with pytest.raises(ValueError, match="allowed is a finite number above 1"):
-        bound_largest(kernel_of(lambda x: x), UNIT, 1.0)
-
-
-def test_a_search_gives_up_after_too_many_boxes():
-    kernel = kernel_of(lambda x, y: jnp.sin(50 * x * y) * x, 2)
-    assert bound_largest(kernel, np.array([[0.0, 1.0]] * 2), 1.000001, max_boxes=10).upper is None
-
-
-def test_a_search_stays_within_its_stack_and_goes_on_with_a_larger_one():
-    box = np.array(KNOWN["narrow"][1], float)
-    worker = Worker(known("narrow"), box, 1.001, None)
-    memory = np.full((64, 2, 2), np.nan)
-    worker.stack = memory[:9]
-    worker.push(box)
-    while worker.state.depth:
-        worker.run()
-        assert np.isnan(memory[9:]).all() and not worker.failed
-    whole = bound_largest(known("narrow"), box, 1.001, threads=1)
-    assert len(worker.stack) > 9
-    assert worker.state.reached == pytest.approx(whole.upper, rel=1e-3)
-
-
-def test_the_boxes_of_a_proof_cover_the_whole_box():
-    leaves = np.empty((100_000, 2, 1))
-    leaves[:] = np.nan
-    found = bound_largest(
-        kernel_of(lambda x: jnp.sin(9 * x) * x), UNIT, 1.001, threads=1, leaves=leaves
-    )
-    kept = leaves[~np.isnan(leaves[:, 0, 0]), :, 0]
-    assert 10 < len(kept) < found.boxes
-    kept = kept[np.argsort(kept[:, 0])]
-    assert kept[0, 0] == 0 and kept[-1, 1] == 1
-    np.testing.assert_array_equal(kept[1:, 0], kept[:-1, 1])
