@@ -16,7 +16,7 @@ from fitting.solvers.exchange import Exchange
 from fitting.solvers.minimax import Minimax
 from quantities import problem
 from quantities.fuzz.supplement import QUADRATIC_Q
-from tests.fitting.toys import PLANE, QUOTIENT, TOY, toy_form
+from tests.fitting.toys import QUOTIENT, TOY, toy_form
 
 Q_FORM = problem("q").find_form("pole-q", {"structure": "one", "terms": 1, "poles": 1})
 R_FORM = problem("r").find_form(
@@ -232,17 +232,6 @@ def test_a_denominator_whose_fixed_term_should_vanish_is_reported():
     found = fit(replace(form, reference=exact))
     assert not found.converged
     assert "let another term of the denominator be 1, such as that of below" in found.solver
-
-
-def test_a_coefficient_that_changes_no_value_at_the_points_is_left_out():
-    """As a value of a piecewise form between whose knots a program has no point."""
-    idle = toy_form(
-        lambda c, x, y: c[0] + c[1] * x + c[2] * y + c[3] * jnp.maximum(x - 2, 0) * y,
-        ["1", "x", "y", "idle"],
-    )
-    found, known = (fit(form, Goal("linf")) for form in (idle, PLANE))
-    assert found.off_grid.largest == pytest.approx(known.off_grid.largest, rel=1e-6)
-    assert np.isfinite(found.fitted.constants).all()
 
 
 def test_each_step_is_told():
