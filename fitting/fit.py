@@ -180,10 +180,7 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
     fitted, sample = form.fitted(found.coefficients), found.sample
     certificate = certify_denominators(fitted, ENOUGH)
     if not certificate.holds:
-        raise ValueError(
-            f"the fit of {form.name} has a denominator that is not shown to be positive "
-            f"on its whole domain{failing_denominator(fitted)}"
-        )
+        raise ValueError(f"the fit of {form.name} has {failing_denominator(fitted)}")
     values = certify_range(fitted)
     if goal.bounded and values is None:
         raise ValueError(

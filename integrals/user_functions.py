@@ -99,14 +99,17 @@ def check_map(function: Callable, names: Sequence[str], axes: Sequence[Axis]) ->
 def check_range(range_: Range, fractions: np.ndarray, axes: Sequence[Axis]) -> np.ndarray:
     """Try a range of integration and return the variable at `fractions` (PROBES,) of it.
 
-    Raises ValueError if the range is empty at a probe, or if an end or a break is NaN there.
+    Its length may be zero on a face of the domain, as of a cone without an angle: the integral is
+    zero there. Raises ValueError if the upper end is below the lower one at a probe, if both are
+    equal at all, or if an end or a break is NaN.
     """
     ends = []
     for place in (range_.lower, range_.upper, *range_.breaks):
         constant = np.full(PROBES, np.nan if callable(place) else place)
         ends.append(check_function(place, [], [], axes) if callable(place) else constant)
     values = probe_axes(axes)
-    for index in np.flatnonzero(ends[0] >= ends[1]):
+    empty = ends[0] > ends[1] if np.any(ends[0] < ends[1]) else ends[0] >= ends[1]
+    for index in np.flatnonzero(empty):
         point = describe([axis.name for axis in axes], [each[index] for each in values])
         interval = f"({ends[0][index]:.6g}, {ends[1][index]:.6g})"
         raise ValueError(f"over {interval} at {point}: the interval is empty")

@@ -143,7 +143,7 @@ class Result:
             ("solver", self.fit.solver),
         ]
         if not self.fit.converged:
-            rows.append(("warning", "the solver did not converge: try other starts"))
+            rows.append(("warning", "the fit did not converge: the row of the solver says why"))
         known = self.table.uncertainty
         if known is not None and not known.unique:
             names = ", ".join(known.undetermined)

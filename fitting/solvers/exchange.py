@@ -24,8 +24,9 @@ from fitting.solvers.scattered_squares import fit_squares
 from fitting.solvers.starts import quotient_starts
 
 PRECISIONS = {"float32": np.float32, "float16": np.float16}
-# A part of a denominator that is smaller than this does not change values beyond rounding by much.
-_NEGLIGIBLE = 1e-10
+# A part of a denominator that is nowhere larger than this, relative to all of it, has no influence
+# on the values: the other coefficients have grown.
+_NEGLIGIBLE = 1e-6
 SQUARES = "trust region (SciPy)"
 
 
@@ -106,9 +107,14 @@ class Exchange:
             words = f"{SQUARES}; linear programs (HiGHS)"
             if not converged:
                 words += f"; the largest error did not settle in {self.exchanges} exchanges"
-        if _runs_away(problem_at(form, sample, goal), found):
+        largest = _running_away(problem_at(form, sample, goal), found)
+        if largest is not None:
             converged = False
-            words += "; coefficients grow without limit: let another term of the denominator be 1"
+            name = np.ravel(form.coefficient_names)[largest]
+            words += (
+                "; coefficients grow without limit: let another term of the denominator be 1, "
+                f"such as that of {name}"
+            )
         if goal.rounding != "none":
             progress(f"{form.name}: rounding to {goal.rounding}")
             found = self._rounded(form, sample, goal, found)
@@ -226,16 +232,20 @@ def _is_plain(goal: Goal, sample: Sample) -> bool:
     return goal.norm == "linf" and goal.side == "both" and bool(np.all(sample.scale == 1))
 
 
-def _runs_away(problem: Residuals, z: np.ndarray) -> bool:
-    """Whether the part of a quotient's denominator without coefficients has become negligible.
+def _running_away(problem: Residuals, z: np.ndarray) -> int | None:
+    """Return the coefficient of the largest term of a denominator, if coefficients run away.
 
-    Then the best denominator has not that part, or has it with the other sign, so that all other
-    coefficients grow.
+    They do if the part of a quotient's denominator without coefficients has become negligible. Then
+    the best denominator has not that part, or has it with the other sign, so that all other
+    coefficients grow. None: they do not.
     """
     parts = problem.parts
     if parts is None or not np.any(parts.b):
-        return False
-    return bool(np.all(np.abs(parts.b0) <= _NEGLIGIBLE * np.abs(parts.b0 + parts.b @ z)))
+        return None
+    below = parts.b0 + parts.b @ z
+    if np.any(np.abs(parts.b0) > _NEGLIGIBLE * np.abs(below)):
+        return None
+    return int(np.argmax(np.mean(parts.b / below[:, None], axis=0) * z))
 
 
 def _require_range(form: Form, found: np.ndarray, rounding: str) -> None:

@@ -75,8 +75,10 @@ def quotient_lines(problem: Residuals, z, error, rows, count: int) -> Lines:
     near[rows] = True
     weight = np.abs(below) / np.mean(np.abs(below[near]))
     mean = np.mean(weight[near, None] * growth[near], axis=0)
-    # Coefficients may differ by many orders: their scale is that of their columns.
-    unit = 1 / np.maximum(np.abs(growth[near]).max(axis=0) + np.abs(slopes).max(axis=0), 1e-300)
+    # Coefficients may differ by many orders: their scale is that of their columns. A coefficient
+    # that changes none of these rows, such as a value of a piecewise form, has none.
+    scale = np.abs(growth[near]).max(axis=0) + np.abs(slopes).max(axis=0)
+    unit = 1 / np.where(scale > 0, scale, 1.0)
     steps = unit[:, None] * _across(mean * unit)
     # Where a denominator is small, its row is divided by what it may grow to.
     weight = np.minimum(weight, 1)

@@ -111,7 +111,6 @@ def run(
 
     from coefficients.files import require_writable, write_whole
     from coefficients.table import serialise
-    from shadefit.encoding import visible
     from shadefit.outputs import RefitOutput
     from shadefit.progress import stages
     from shadefit.terminal import print_json, print_table
@@ -133,7 +132,7 @@ def run(
 
         def make(
             each: "tuple[Problem, Form] | Entry",
-        ) -> "tuple[Table, Opinion | str | None] | str":
+        ) -> "tuple[Table, Opinion | str | None, str] | str":
             name = table_name(each)
             line = progress.begin(name)
             try:
@@ -160,8 +159,8 @@ def run(
     refused = [each for each in made if isinstance(each, str)]
     if not tables:
         raise ValueError("; ".join(refused))
-    for reason in refused:
-        print(visible(f"refused: {reason}"), file=sys.stderr)
+    _tell("refused", refused)
+    _tell("warning", [each[2] for each in made if not isinstance(each, str) and each[2]])
     folders = [f for f, each in zip(folders, made, strict=True) if not isinstance(each, str)]
     files = [folder / f"{table.name}.json" for folder, table in zip(folders, tables, strict=True)]
     for table, file in zip(tables, files, strict=True):
@@ -187,6 +186,14 @@ def run(
         for table, opinion in zip(tables, opinions, strict=True):
             if opinion is not None:
                 print(f"{table.name}: {opinion_text(opinion)}")
+
+
+def _tell(word: str, reasons: list[str]) -> None:
+    """Print each reason on standard error, after a word."""
+    from shadefit.encoding import visible
+
+    for reason in reasons:
+        print(visible(f"{word}: {reason}"), file=sys.stderr)
 
 
 def _require_measure(weight: str) -> None:
@@ -218,7 +225,8 @@ def _table(
     given: dict[str, Any],
     tell: Callable[[str], None],
     second_opinion: bool,
-) -> "tuple[Table, Opinion | str | None]":
+) -> "tuple[Table, Opinion | str | None, str]":
+    """Return the table, the second opinion if it is wanted, and a warning, which may be empty."""
     from coefficients.record import table_of
     from fitting.fit import fit
     from fitting.goal import Goal
@@ -236,7 +244,7 @@ def _table(
         search = owner.counterexamples()
         made = fit(form, Goal(**given), nodes, weight, tell, counterexamples=search)
         table = table_of(made, command, table_name(each), owner)
-        return table, _opinion(made) if second_opinion else None
+        return table, _opinion(made) if second_opinion else None, _warning(table, made)
     table = each.require_table()
     own = {} if table.goal is None else table.goal.model_dump()
     goal = Goal(**{**own, **given})
@@ -250,7 +258,12 @@ def _table(
     options = _options({**({} if weight == _EVENLY else {"weight": weight}), **given})
     command = f"shadefit refit {each.name}{options}"
     table = table_of(made, command, table.name, each.problem)
-    return table, _opinion(made) if second_opinion else None
+    return table, _opinion(made) if second_opinion else None, _warning(table, made)
+
+
+def _warning(table: "Table", made: "Fit") -> str:
+    """Return why a fit did not converge; an empty text if it did."""
+    return "" if made.converged else f"{table.name} did not converge: {made.solver}"
 
 
 def _opinion(made: "Fit") -> "Opinion | str":

@@ -95,6 +95,8 @@ def search(
         for name, each in problems().items()
         if each.candidates is not None or len(each.single_forms) > 1
     }
+    if quantity not in known and quantity in problems():
+        raise ValueError(f"{quantity} has a single form: a search needs several to choose from")
     if quantity not in known:
         raise ValueError(f"no forms are known of {quantity!r}: allowed are {', '.join(known)}")
     if budget is not None and budget < 1:

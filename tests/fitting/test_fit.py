@@ -209,7 +209,7 @@ def test_a_fit_with_a_pole_is_refused(where):
 def test_a_fit_to_scattered_points_that_is_not_certified_is_refused(monkeypatch):
     nothing = type(certify_denominators(QUADRATIC_Q.fitted(np.ones(2))))(-np.inf, 1)
     monkeypatch.setattr("fitting.fit.certify_denominators", lambda *_: nothing)
-    with pytest.raises(ValueError, match="quadratic-q has a denominator that is not shown to be"):
+    with pytest.raises(ValueError, match="quadratic-q has a value that is not shown to be finite"):
         fit(QUADRATIC_Q)
 
 

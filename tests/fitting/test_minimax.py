@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from fitting.points.sample import sample_of
+from fitting.shapes.piecewise import piecewise_linear
 from fitting.solvers.minimax import Minimax
 from fitting.solvers.residuals import badness, largest_of, limits, residuals
 from quantities.fuzz.supplement import QUADRATIC_Q, RATIONAL_G
+from tests.fitting.toys import TOY
 
 NODES = np.linspace(0, 0.5, 501)[:, None]
 D = NODES[:, 0]
@@ -136,3 +138,14 @@ def test_no_program_steps_over_a_pole():
     found = minimise(free, start)
     assert np.isfinite(free.values(found)).all()
     assert np.abs(free.values(found)).max() < np.abs(free.values(start)).max()
+
+
+def test_a_coefficient_that_changes_no_value_at_the_points_is_no_obstacle():
+    """No point is between the last knots of x. Before, the steps of such values were infinite."""
+    form = piecewise_linear(TOY, (9, 9), name="knots")
+    points = np.random.default_rng(0).random((60, 2)) * (0.4, 3) - (0, 1)
+    ones, free = np.ones(len(points)), np.full(form.size, True)
+    found = residuals(form, points, np.asarray(TOY.values(points)), ones, free, 0.0 * free)
+    start = np.full(form.size, 2.0)
+    assert np.abs(found.values(start)).max() > 1
+    assert np.abs(found.values(minimise(found, start))).max() < 0.01

@@ -454,6 +454,15 @@ def test_default_sampling_depends_on_axes_and_cost():
     assert make_reference(source, name="t", axes=[PLACE], sampling=chosen).sampling is chosen
 
 
+def test_an_interval_may_be_empty_on_a_face_of_the_domain():
+    """∫₀ᵃ cos t dt = sin a, with a break that the interval need not contain."""
+    source = quadrature(lambda t, a: jnp.cos(t), [(0, lambda a: a)], breaks=[lambda a: 1 - a])
+    leg = single(source, axis("a", 0.0, 1.0)).quadrature
+    for a in (0.0, 0.3, 1.0):
+        assert leg(a).value == pytest.approx(np.sin(a), abs=1e-15)
+    assert jax.grad(lambda a: leg(a).value)(0.0) == pytest.approx(1.0)
+
+
 def named(t, a):
     return t * a
 
@@ -477,6 +486,10 @@ UNIT = [(0, 1)]
         (lambda: quadrature(named, [(float("nan"), 1)]), "the interval is empty"),
         (
             lambda: quadrature(named, [(lambda a: a, 0)]).legs([PLACE]),
+            r"at a = .*: the interval is",
+        ),
+        (
+            lambda: quadrature(named, [(lambda a: a, lambda a: a)]).legs([PLACE]),
             r"at a = .*: the interval is",
         ),
         (lambda: quadrature(named, [(lambda: 0, 1)]).legs([PLACE]), "cannot take 1 arguments"),

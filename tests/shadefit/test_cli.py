@@ -165,7 +165,7 @@ def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
     capsys, tmp_path, monkeypatch
 ):
     written = []
-    monkeypatch.setattr(refit, "_table", lambda each, *_: (table_of(table_name(each)), None))
+    monkeypatch.setattr(refit, "_table", lambda each, *_: (table_of(table_name(each)), None, ""))
     monkeypatch.setattr(files, "write_whole", lambda path, _: written.append(path.absolute()))
     own = [FOLDER / "fuzz" / "refit" / "q.json", FOLDER / "fuzz" / "best" / "q-4.json"]
     for folder, said in (

@@ -36,7 +36,7 @@ SLOW = ("bake", "export", "export of code", "refit", "report")
 @pytest.fixture
 def at_once(monkeypatch, tmp_path):
     """Run in an empty folder, without the work before the saves."""
-    table = lambda each, *_: (resolve(table_name(each)).require_table(), None)  # noqa: E731
+    table = lambda each, *_: (resolve(table_name(each)).require_table(), None, "")  # noqa: E731
     monkeypatch.setattr(refit, "_table", table)
     monkeypatch.setattr("shadefit.figures.pictures", dict)
     monkeypatch.setattr("shadefit.report.page.page", lambda *_: "<html>the new page</html>\n")

@@ -77,6 +77,7 @@ def test_a_search_for_r_begins_with_the_forms_of_the_best_tables(tmp_path):
     ("arguments", "message"),
     [
         (("s", None, None, None), "no forms are known of 's'"),
+        (("velvet", None, None, None), "velvet has a single form: a search needs several"),
         (("q", 0, None, None), "budget = 0"),
         (("q", None, -1.0, None), "max-error = -1.0"),
         (("r", None, None, ["alpha=1.5"]), "--lower alpha=1.5: allowed are 0.01 to below 1"),

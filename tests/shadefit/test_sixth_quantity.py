@@ -89,6 +89,24 @@ def test_its_options_are_those_of_its_axes(capsys, arguments, message):
     assert message in capsys.readouterr().err
 
 
+def test_a_fit_that_did_not_converge_is_told_on_standard_error(capsys, tmp_path):
+    """The best constant of the denominator is 0: 1/(x + x²) is the quantity."""
+    file = tmp_path / "vanishing.py"
+    file.write_text(
+        "from shadefit import Axis, Problem, closed_form\n"
+        'p = Problem("vanishing", [Axis("x", 0.5, 2)], closed_form(lambda x: 1 / (x + x * x)))\n'
+        'p.rational((0,), (0, 1, 2), name="plain")\n'
+        'p.rational((0,), (0, 1, 2), one=1, name="better")\n'
+    )
+    with pytest.raises(SystemExit) as ended:
+        main(["refit", "-p", str(file), "--form", "all", "--out", str(tmp_path / "tables")])
+    assert ended.value.code == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("warning: vanishing did not converge: ")
+    assert "let another term of the denominator be 1, such as that of b" in line
+    unregister("vanishing")
+
+
 def test_the_declaration_is_short():
     assert len(EXAMPLE.read_text().splitlines()) < 60
 
