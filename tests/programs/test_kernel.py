@@ -100,6 +100,11 @@ def test_numbers_below_the_smallest_normal_one_are_kept():
     assert low <= 0.25e-320 <= high and 0 < high < 1e-310
 
 
+def test_code_that_does_not_compile_is_an_error_of_the_toolchain():
+    with pytest.raises(ToolchainError, match="does not compile"):
+        compiled.compile_kernel(["not C;"], 1)
+
+
 def test_the_rounding_mode_is_restored():
     bound_largest(kernel_of(lambda x: x * (1 - x)), UNIT, 1.1)
     assert np.float64(1) + np.float64(2**-60) == 1
