@@ -142,7 +142,7 @@ class Result:
             ("operations", str(self.operations)),
             ("solver", self.fit.solver),
         ]
-        if not self.fit.converged:
+        if self.fit.converged is False:
             rows.append(("warning", "the fit did not converge: the row of the solver says why"))
         known = self.table.uncertainty
         if known is not None and not known.unique:

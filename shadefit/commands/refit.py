@@ -262,8 +262,8 @@ def _table(
 
 
 def _warning(table: "Table", made: "Fit") -> str:
-    """Return why a fit did not converge; an empty text if it did."""
-    return "" if made.converged else f"{table.name} did not converge: {made.solver}"
+    """Return why a fit did not converge; an empty text if it did, or if that was not examined."""
+    return f"{table.name} did not converge: {made.solver}" if made.converged is False else ""
 
 
 def _opinion(made: "Fit") -> "Opinion | str":

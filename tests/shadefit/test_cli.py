@@ -161,6 +161,13 @@ def test_refit_writes_valid_tables_and_the_same_bytes_twice(capsys, tmp_path):
     assert sorted(path.name for path in (tmp_path / "a").iterdir()) == ["g.json", "q.json"]
 
 
+def test_refit_does_not_warn_of_a_convergence_that_was_not_examined(capsys, tmp_path):
+    """The solver of velvet is a linear program of its own."""
+    status, _, error = run(capsys, "refit", "velvet", "--grid", "9", "--out", str(tmp_path))
+    assert status == 0
+    assert "warning" not in error
+
+
 def test_a_refit_replaces_the_table_that_is_loaded_wherever_the_command_is_run(
     capsys, tmp_path, monkeypatch
 ):
