@@ -50,7 +50,7 @@ class Fit:
       can have; None if there is no such proof.
     * `local_optimality`: how much a small change of the coefficients could lower the largest error;
       None for another goal, and if there is a `least_error`.
-    * `range`: proven bounds of all values, which lie between 0 and 1 up to rounding; None if this
+    * `range`: proven bounds of all values, which lie in the codomain up to rounding; None if this
       is not proven.
     * `converged`: whether the solver reached what it looks for: for least squares a minimum, for
       the largest error one that is nowhere larger than at the points of the fit. If it is false,
@@ -183,9 +183,10 @@ def _scattered(form: Form, found: ScatteredFit, goal: Goal, weights: str) -> Fit
         raise ValueError(f"the fit of {form.name} has {failing_denominator(fitted)}")
     values = certify_range(fitted)
     if goal.bounded and values is None:
+        lower, upper = form.reference.codomain
         raise ValueError(
-            f"the fit of {form.name} has values that are not shown to be between 0 and 1 "
-            "on its whole domain"
+            f"the fit of {form.name} has values that are not shown to be between {lower:g} and "
+            f"{upper:g} on its whole domain"
         )
     errors = form_values(fitted, sample.points) - sample.exact
     least = local = None

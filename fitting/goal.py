@@ -17,7 +17,8 @@ class Goal:
     * `side`: 'below' allows no value above the exact one, for a quantity that must not create
       energy; 'above' allows none below it. Both need 'linf'.
     * `rounding`: the precision that the coefficients are rounded to.
-    * `bounded`: all values must be between 0 and 1, and proven to be. It needs 'linf'.
+    * `bounded`: all values must be in the codomain of the quantity, [0, 1] for a fraction, and
+      proven to be. It needs 'linf'.
     """
 
     norm: Norm = "l2"

@@ -164,7 +164,8 @@ def _csv(content: bytes, path: Path) -> dict[str, np.ndarray]:
                 continue
             if len(row) != len(names):
                 raise ValueError(
-                    f"{path}:{number} has {len(row)} fields, the header has {len(names)}"
+                    f"{path}:{number} has {len(row)} fields, the header has {len(names)}; commas "
+                    "separate them"
                 )
             numbers.extend(map(_number, row))
     except csv.Error as error:

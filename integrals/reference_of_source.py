@@ -36,9 +36,11 @@ def make_reference(
 ) -> Reference:
     """Return the reference of a quantity with these axes. A sequence of sources is added up.
 
-    `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does, and for data
-    outside the axes' domains or with another number of axes.
+    `symbol` is `name` if it is not given. Raises ValueError as `Source.legs` does, without
+    axes, and for data outside the axes' domains or with another number of axes.
     """
+    if not axes:
+        raise ValueError("axes = []: at least one Axis is needed")
     legs, data, batch = {}, None, _LARGEST_BATCH
     if isinstance(source, Data):
         data, default = source, Sampling(fitted=11, checked=11, judged=11, climbs=False)

@@ -71,7 +71,9 @@ def new(
     from shadefit.terminal import print_lines
 
     if not re.fullmatch(r"[a-z][a-z0-9_-]{0,39}", name):
-        raise ValueError(f"{name!r} is no name: allowed are up to 40 of a-z, 0-9, - and _")
+        raise ValueError(
+            f"{name!r} is no name: allowed are a letter and up to 39 of a-z, 0-9, - and _"
+        )
     path = out / f"{name.replace('-', '_')}.py"
     if path.exists():
         raise ValueError(f"{path} exists already: it is not replaced")

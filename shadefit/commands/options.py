@@ -43,7 +43,11 @@ Relative = Annotated[
 ]
 Bounded = Annotated[
     bool,
-    typer.Option("--bounded", help="With linf: keep all values between 0 and 1, and prove it."),
+    typer.Option(
+        "--bounded",
+        help="With linf: keep all values within the codomain (a fraction: between 0 and 1), and "
+        "prove it.",
+    ),
 ]
 
 

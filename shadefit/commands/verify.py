@@ -46,7 +46,7 @@ def verify(
     kinds = _precisions(languages, precision)
     from coefficients.catalogue import resolve
     from coefficients.exported_code import trial_of
-    from programs import check
+    from programs import check, toolchain
     from shadefit.code_records import VerifiedTable
     from shadefit.commands.table_records import entry_fields
     from shadefit.outputs import VerifyOutput
@@ -76,9 +76,11 @@ def verify(
     else:
         for name, rows in checks.items():
             _print(name, rows)
-        left_out = sum(each.status == "not checked" for each in every)
+        left_out = [each for each in every if each.status == "not checked"]
         if left_out:
-            print(f"{left_out} of {len(every)} not checked: {ADVICE}")
+            missing = any(toolchain(each.language).missing(each.precision) for each in left_out)
+            advice = f": {ADVICE}" if missing else ""
+            print(f"{len(left_out)} of {len(every)} not checked{advice}")
     return 1 if any(each.status == "failed" for each in every) else 0
 
 

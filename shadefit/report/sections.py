@@ -211,7 +211,7 @@ def _goal(goal: dict) -> str:
     if goal["side"] != "both":
         words.append(f"staying {goal['side']} the exact values")
     if goal["bounded"]:
-        words.append("values between 0 and 1")
+        words.append("only possible values")
     if goal["rounding"] != "none":
         words.append(f"coefficients rounded to {goal['rounding']}")
     return ", ".join(words)

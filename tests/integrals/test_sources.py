@@ -493,6 +493,7 @@ UNIT = [(0, 1)]
             r"at a = .*: the interval is",
         ),
         (lambda: quadrature(named, [(lambda: 0, 1)]).legs([PLACE]), "cannot take 1 arguments"),
+        (lambda: single(quadrature(named, UNIT)), r"axes = \[\]: at least one Axis is needed"),
         (lambda: quadrature(named, [0, 1]), "expected is .lower, upper. for each variable"),
         (lambda: quadrature(named, UNIT, breaks=[(), ()]), "one sequence for each of the 1 var"),
         (lambda: quadrature(named, UNIT, breaks=[np.nan]), "have to be finite"),

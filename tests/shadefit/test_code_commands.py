@@ -9,6 +9,7 @@ from coefficients import exported_code
 from programs import PRECISIONS, ToolchainError, toolchain
 from programs.toolchains import verification
 from programs.toolchains.interface import Toolchain
+from programs.toolchains.verification import Check
 from shadefit.cli import main
 from shadefit.commands.verify import ADVICE
 
@@ -40,6 +41,14 @@ def test_a_missing_compiler_is_not_checked_and_never_passed(capsys, monkeypatch)
     # One line says how to get what is missing.
     advice = [line for line in out.splitlines() if "make toolchains" in line]
     assert advice == [f"1 of 1 not checked: {ADVICE}"]
+
+
+def test_a_coefficient_that_is_no_half_is_no_missing_compiler(capsys, monkeypatch):
+    found = Check("c", "half", "not checked", "c0 = 1e+06 is no half")
+    monkeypatch.setattr("programs.check", lambda trial, key: found)
+    monkeypatch.setattr(Toolchain, "missing", lambda self, precision: None)
+    _, out, _ = run(capsys, "verify", "q", "--to", "c", "--precision", "half")
+    assert "1e+06 is no half" in out and out.splitlines()[-1] == "1 of 1 not checked"
 
 
 def test_verify_says_by_its_status_that_something_failed(capsys, monkeypatch):
