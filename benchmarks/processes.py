@@ -7,7 +7,8 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-THREADS = {"OPENBLAS_NUM_THREADS": "1"}
+# Python keeps the modules that it compiled, as it does for users, whatever this machine's setting.
+COMMON = {"OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": ""}
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ def run(command: list[str], variables: Mapping[str, str] | None = None) -> Run:
     """Run a command. The time of its child processes counts. Ends the program if it fails."""
     with tempfile.TemporaryFile("w+") as output:
         clock = time.perf_counter()
-        environment = {**os.environ, **THREADS, **(variables or {})}
+        environment = {**os.environ, **COMMON, **(variables or {})}
         child = subprocess.Popen(command, stdout=output, env=environment)
         _, status, usage = os.wait4(child.pid, 0)
         wall = time.perf_counter() - clock
