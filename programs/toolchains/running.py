@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 _RUNNING: set[subprocess.Popen] = set()
-# Held while a program starts, and for good once the process ends.
+# Held while a program starts or is given up, and for good once the process ends.
 _OPEN = threading.Lock()
 
 
@@ -29,7 +29,11 @@ def start(words: Sequence[str], **options: Any) -> subprocess.Popen:
 
 
 def end(process: subprocess.Popen) -> None:
-    """Kill a program and all that it started, if it still runs, and wait for it."""
+    """Kill a program and all that it started, if it still runs, and wait for it.
+
+    Once `end_all` has killed it, this does not return: the caller would complain of a program that
+    failed, while another thread ends the process.
+    """
     if process.poll() is None:
         _kill(process)
         process.wait()
@@ -37,7 +41,8 @@ def end(process: subprocess.Popen) -> None:
         if each is not None:
             with suppress(OSError):
                 each.close()
-    _RUNNING.discard(process)
+    with _OPEN:
+        _RUNNING.discard(process)
 
 
 def run(
@@ -58,7 +63,10 @@ def run(
 
 
 def end_all() -> None:
-    """Kill all programs; for handlers of signals that end the process. None can start after it."""
+    """Kill all programs; for handlers of signals that end the process.
+
+    After it, no program can start, and those who wait for one wait for good.
+    """
     _OPEN.acquire()
     for process in tuple(_RUNNING):
         _kill(process)

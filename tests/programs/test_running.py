@@ -60,6 +60,28 @@ def test_what_a_hung_program_started_is_killed_too(tmp_path):
     assert ends(int((tmp_path / "other").read_text()))
 
 
+_ENDING = """
+import os, threading, time
+from programs.toolchains import running
+
+def end_process():
+    while not running._RUNNING:
+        time.sleep(0.01)
+    running.end_all()
+    time.sleep(1)
+    os._exit(7)
+
+threading.Thread(target=end_process).start()
+running.run(["sleep", "60"], 60.0)
+os._exit(1)
+"""
+
+
+def test_nobody_hears_of_a_program_that_was_killed_because_the_process_ends():
+    done = subprocess.run([sys.executable, "-c", _ENDING], check=False, timeout=60)
+    assert done.returncode == 7
+
+
 _COMPILING = f"""
 import sys, types
 from programs.toolchains.process import execute, workspace
