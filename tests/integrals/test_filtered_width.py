@@ -42,6 +42,7 @@ def test_ends():
     assert x * np.exp(x) * exp1(x) == pytest.approx(0.5, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_scipy_finds_the_same_root():
     u = 0.3
 

@@ -371,7 +371,7 @@ def test_jit_and_vmap_agree_with_single_points():
         np.testing.assert_allclose(together.error[index], alone.error, atol=1e-13)
 
 
-@pytest.mark.parametrize("count", [3, 100])
+@pytest.mark.parametrize("count", [pytest.param(3, marks=pytest.mark.slow), 100])
 def test_each_place_of_a_batch_takes_the_steps_that_it_needs(count):
     """At a = 0 the integrand has a singularity, and elsewhere none: the places differ in steps."""
     leg = quadrature(lambda t, a: jnp.sqrt(t + a), [(0, 1)]).legs([PLACE])["quadrature"]
