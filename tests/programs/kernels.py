@@ -1,7 +1,7 @@
 """Kernels for tests: many expressions in one compiled search, and one expression alone."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
@@ -28,21 +28,20 @@ def kernel_of(call: Callable, sides: int = 1, **options) -> Kernel:
 
 
 class Kernels:
-    """A kernel with several expressions, one of which is chosen at a time: one compilation."""
+    """A kernel with several expressions, one of which is chosen at a time: one compilation.
 
-    def __init__(self, calls: Mapping[str, Callable], sides: int):
-        self.places = {name: k for k, name in enumerate(calls)}
-        parts = [code_of(f"expression_{k}", call, sides) for k, call in enumerate(calls.values())]
-        arguments = ", ".join(f"x[{k}]" for k in range(sides))
-        cases = " ".join(
-            f"case {k}: return expression_{k}(K, {arguments});" for k in range(len(calls))
-        )
-        parts.append(
+    `code` has their functions. `call` is the call of one, in which {k} is its number.
+    """
+
+    def __init__(self, names: Iterable[str], code: list[str], call: str, sides: int):
+        self.places = {name: k for k, name in enumerate(names)}
+        cases = " ".join(f"case {k}: return {call.format(k=k)};" for k in self.places.values())
+        chosen = (
             f"static int place; void choose_place(int k) {{ place = k; }}\n"
             f"static jet error_at(boxes *K, const jet *x) {{ switch (place) {{ {cases} }} "
             "K->bad = ~(M){0}; return x[0]; }"
         )
-        self.kernel = compile_kernel(parts, sides)
+        self.kernel = compile_kernel([*code, chosen], sides)
 
     def __call__(self, name: str, lower, upper) -> tuple[float, float, float, float]:
         """Bound an expression on a box, and its value at the centre."""
@@ -50,28 +49,20 @@ class Kernels:
         return self.kernel.enclose(np.stack([np.atleast_1d(lower), np.atleast_1d(upper)], axis=1))
 
 
-class RoundingKernels:
-    """A kernel with the bounds of the rounding errors of several programs, as `Kernels`."""
+def kernels_of(calls: Mapping[str, Callable], sides: int) -> Kernels:
+    code = [code_of(f"expression_{k}", call, sides) for k, call in enumerate(calls.values())]
+    arguments = ", ".join(f"x[{k}]" for k in range(sides))
+    return Kernels(calls, code, f"expression_{{k}}(K, {arguments})", sides)
 
-    def __init__(self, programs: Mapping[str, Program], model: RoundingModel, sides: int):
-        self.places = {name: k for k, name in enumerate(programs)}
-        given = " ".join(f"v[{k}] = x[{k}];" for k in range(sides))
-        code: list[str] = []
-        for k, program in enumerate(programs.values()):
-            first, *parts = rounding_parts(program, model, given, [False] * sides)
-            code += [] if code else [first]
-            code += [
-                re.sub(r"\b(error_of|value_of|error_at)\b", rf"\1_{k}", part) for part in parts
-            ]
-        cases = " ".join(f"case {k}: return error_at_{k}(K, x);" for k in range(len(programs)))
-        code.append(
-            f"static int place; void choose_place(int k) {{ place = k; }}\n"
-            f"static jet error_at(boxes *K, const jet *x) {{ switch (place) {{ {cases} }} "
-            "K->bad = ~(M){0}; return x[0]; }"
-        )
-        self.kernel = compile_kernel(code, sides)
 
-    def __call__(self, name: str, lower, upper) -> tuple[float, float, float, float]:
-        """Bound the error on a box, and that at its centre."""
-        self.kernel.library.choose_place(self.places[name])
-        return self.kernel.enclose(np.stack([np.atleast_1d(lower), np.atleast_1d(upper)], axis=1))
+def rounding_kernels_of(
+    programs: Mapping[str, Program], model: RoundingModel, sides: int
+) -> Kernels:
+    """Return the bounds of the rounding errors of several programs."""
+    given = " ".join(f"v[{k}] = x[{k}];" for k in range(sides))
+    code: list[str] = []
+    for k, program in enumerate(programs.values()):
+        first, *parts = rounding_parts(program, model, given, [False] * sides)
+        code += [] if code else [first]
+        code += [re.sub(r"\b(error_of|value_of|error_at)\b", rf"\1_{k}", part) for part in parts]
+    return Kernels(programs, code, "error_at_{k}(K, x)", sides)

@@ -10,7 +10,7 @@ from programs.bounding.compiled import compiler_missing
 from programs.bounding.rounding_model import IEEE, ULP
 from programs.operations import OPERATIONS
 from programs.program import Program, Step
-from tests.programs.kernels import RoundingKernels
+from tests.programs.kernels import rounding_kernels_of
 
 # The functions of all operations take four seconds to compile.
 pytestmark = [
@@ -48,8 +48,8 @@ def program_of(operation: str) -> Program:
 
 
 @functools.cache
-def kernels() -> RoundingKernels:
-    return RoundingKernels({name: program_of(name) for name in _RULES}, IEEE, 2)
+def kernels() -> rounding_kernels_of:
+    return rounding_kernels_of({name: program_of(name) for name in _RULES}, IEEE, 2)
 
 
 def expected(operation: str, x: float, y: float):

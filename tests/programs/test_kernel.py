@@ -13,7 +13,7 @@ from programs.bounding import compiled
 from programs.bounding.compiled import compiler_missing
 from programs.bounding.largest import bound_largest
 from programs.toolchains.process import ToolchainError
-from tests.programs.kernels import Kernels, kernel_of
+from tests.programs.kernels import Kernels, kernel_of, kernels_of
 from tests.programs.test_loopholes import BOX, FAULTS, HIDDEN, SOUND
 
 pytestmark = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
@@ -129,7 +129,7 @@ ARITHMETIC = {
 
 @functools.cache
 def arithmetic() -> Kernels:
-    return Kernels({name: call for name, (call, _) in ARITHMETIC.items()}, 2)
+    return kernels_of({name: call for name, (call, _) in ARITHMETIC.items()}, 2)
 
 
 @pytest.mark.parametrize("name", ARITHMETIC)
@@ -193,7 +193,7 @@ FUNCTIONS = {
 
 @functools.cache
 def functions() -> Kernels:
-    return Kernels({name: call for name, (call, *_) in FUNCTIONS.items()}, 1)
+    return kernels_of({name: call for name, (call, *_) in FUNCTIONS.items()}, 1)
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -225,7 +225,7 @@ def faulty() -> Kernels:
         if not (fault in skipped or "constant" in fault or "fold" in fault):
             hide = HIDDEN[hidden]
             calls[f"{fault}, {hidden}"] = lambda x, y, c=call, h=hide: h(c(x, y), x, y)
-    return Kernels(calls, 2)
+    return kernels_of(calls, 2)
 
 
 def test_a_box_with_a_fault_has_no_bounds():
@@ -247,7 +247,7 @@ def test_a_lane_without_bounds_does_not_spoil_its_neighbours():
 @functools.cache
 def sound() -> Kernels:
     names = [name for name in SOUND if "infinite" not in name]
-    return Kernels({name: SOUND[name] for name in names if "zero" not in name}, 2)
+    return kernels_of({name: SOUND[name] for name in names if "zero" not in name}, 2)
 
 
 def test_sound_expressions_have_bounds_on_small_boxes():

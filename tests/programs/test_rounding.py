@@ -22,7 +22,7 @@ from programs.bounding.rounding_model import (
 from programs.functions import Function, Parameter
 from programs.program import Program, Step, evaluate, interpret
 from programs.tracing.tracer import trace
-from tests.programs.kernels import RoundingKernels
+from tests.programs.kernels import Kernels, rounding_kernels_of
 
 needs_compiler = pytest.mark.skipif(compiler_missing() is not None, reason="no C compiler")
 NAMES = "xyz"
@@ -114,9 +114,9 @@ def cancelled(call, x, y, first=lambda a, _: a):
 
 
 @functools.cache
-def cancelling() -> RoundingKernels:
+def cancelling() -> Kernels:
     programs = {name: program_of(call, 2) for name, (call, _) in CANCELLED.items()}
-    return RoundingKernels(programs, IEEE, 2)
+    return rounding_kernels_of(programs, IEEE, 2)
 
 
 @needs_compiler
@@ -214,12 +214,12 @@ CONDITIONS = {
 
 
 @functools.cache
-def conditional() -> RoundingKernels:
+def conditional() -> Kernels:
     def call(holds):
         return lambda x, y: jnp.where(holds(y, 1.5), x, (x + 100) - 100)
 
     programs = {name: program_of(call(holds), 2) for name, holds in CONDITIONS.items()}
-    return RoundingKernels(programs, IEEE, 2)
+    return rounding_kernels_of(programs, IEEE, 2)
 
 
 @needs_compiler
@@ -251,14 +251,14 @@ OPERATIONS = {
 
 
 @functools.cache
-def operations(model: str) -> RoundingKernels:
+def operations(model: str) -> Kernels:
     programs = {
         name: Program(name, ("x",), (call,), (1,))
         if isinstance(call, Step)
         else program_of(call, 1)
         for name, (call, *_) in OPERATIONS.items()
     }
-    return RoundingKernels(programs, MODELS[model], 1)
+    return rounding_kernels_of(programs, MODELS[model], 1)
 
 
 @needs_compiler
@@ -326,7 +326,7 @@ def test_errors_are_those_that_the_standards_state():
 def test_an_absolute_error_is_in_all_that_follows():
     """The cosine of Vulkan is wrong by a = 2^-11, so that its square is by a² where it is zero."""
     square = program_of(lambda x: jnp.square(jnp.cos(x)), 1)
-    kernel = RoundingKernels({"square": square}, VULKAN, 1)
+    kernel = rounding_kernels_of({"square": square}, VULKAN, 1)
     for low, high in ((np.pi / 2, np.pi / 2), (1.5, 1.6)):
         _, upper, _, at_centre = kernel("square", low, high)
         assert min(upper, at_centre) >= 2.0**-22
@@ -347,7 +347,7 @@ def test_an_error_that_grows_with_the_argument_is_that_of_the_largest_on_a_box()
         return x
 
     errors = {**IEEE.errors, "exp": OperationError(part, 7 * part), "mul": OperationError()}
-    kernel = RoundingKernels({"power": program_of(power, 1)}, replace(IEEE, errors=errors), 1)
+    kernel = rounding_kernels_of({"power": program_of(power, 1)}, replace(IEEE, errors=errors), 1)
     for low, high, x in ((0.0, 1.0, 1.0), (-1.0, 0.0, -1.0), (1.0, 1.0, 1.0)):
         _, upper, *_ = kernel("power", low, high)
         assert np.exp(32 * x) * (2.0**32 - 1) <= upper
@@ -363,7 +363,7 @@ def test_four_outcomes_that_rounding_may_change_are_combined(count, bounded):
     def steps(x):
         return sum((jnp.where((x + k) - k < 0.5, 0.0, 1.0) for k in range(1, count + 1)), start=x)
 
-    kernel = RoundingKernels({"steps": program_of(steps, 1)}, IEEE, 1)
+    kernel = rounding_kernels_of({"steps": program_of(steps, 1)}, IEEE, 1)
     low, upper, *_ = kernel("steps", 0.5, 0.5)
     assert np.isfinite([low, upper]).all() == bounded
     if bounded:
@@ -374,7 +374,7 @@ def test_four_outcomes_that_rounding_may_change_are_combined(count, bounded):
 def test_the_largest_jump_on_a_box_counts():
     """The cases of a condition that is uncertain at y = 1.5 meet at the centre of the box only."""
     jump = program_of(lambda x, y: jnp.where((y + 1) - 1 < 1.5, x, 3 - x), 2)
-    kernel = RoundingKernels({"jump": jump}, IEEE, 2)
+    kernel = rounding_kernels_of({"jump": jump}, IEEE, 2)
     _, upper, *_ = kernel("jump", [1.0, 1.5], [2.0, 1.5])
     assert 1 <= upper <= 1 + 1e-6
 
@@ -387,7 +387,7 @@ def test_outcomes_are_compared_without_their_rounding():
         total = x + 100
         return jnp.where(y < 1.5, total, jnp.maximum(total, 1))
 
-    kernel = RoundingKernels({"same": program_of(same, 2)}, IEEE, 2)
+    kernel = rounding_kernels_of({"same": program_of(same, 2)}, IEEE, 2)
     _, upper, *_ = kernel("same", [1.0, 1.4], [1.0, 1.6])
     assert 101 * 2.0**-24 <= upper <= 101 * 2.0**-24 * (1 + 1e-5)
 
@@ -401,7 +401,7 @@ def test_each_combination_of_uncertain_outcomes_counts():
         total += jnp.where(x < 0.25, 9.0, 0.0)
         return total - jnp.where((x + 2) - 2 < 0.5, 0.0, 1.0)
 
-    kernel = RoundingKernels({"steps": program_of(steps, 1)}, IEEE, 1)
+    kernel = rounding_kernels_of({"steps": program_of(steps, 1)}, IEEE, 1)
     _, upper, *_ = kernel("steps", 0.5, 0.5)
     # It is the largest difference of any two outcomes.
     assert 1 <= upper <= 2 + 1e-6
@@ -411,7 +411,7 @@ def test_each_combination_of_uncertain_outcomes_counts():
 def test_results_that_are_too_small_may_become_zero():
     """Each product is exact but for underflow: 2^-63 · 2^-64 is half the least normal number."""
     small = program_of(lambda x: (x * 2.0**-64) * 2.0**20, 1)
-    kernel = RoundingKernels({"small": small}, IEEE, 1)
+    kernel = rounding_kernels_of({"small": small}, IEEE, 1)
     _, upper, _, at_centre = kernel("small", 2.0**-63, 2.0**-63)
     for each in (upper, at_centre):
         assert 2.0**-107 <= each <= 2.0**-105
