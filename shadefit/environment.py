@@ -42,7 +42,7 @@ _KEPT_FLAG = re.compile(r"--xla_force_host_platform_device_count=[1-9]\d{0,3}")
 
 
 def fix_environment(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Set or remove every variable that would change what a command computes, or end it."""
+    """Set or remove every variable that would change what a command computes, or make it fail."""
     for name in list(environment):
         if _REMOVED.fullmatch(name) and not _KEPT.fullmatch(name):
             del environment[name]
